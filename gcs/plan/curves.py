@@ -23,7 +23,7 @@ from typing import TypeAlias
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.hulls import ground_track
-from gcs.plan.carry import Motion, Moving, ahead, between, moving
+from gcs.plan.overshoot import ahead, between, past
 
 _LAG_M = 4.0
 """Where the target has left the curve, the vehicle may be so far behind it (vehicle-sim's; an
@@ -71,52 +71,14 @@ class Spline:
     def at(self, share: float) -> Vec3:
         return _blossom(self.controls, share, share, share)
 
-    def arrives(self, accept_m: float, motion: Motion) -> tuple[Moving, ...]:
-        """How the vehicle moves where the curve ends for it: at its end, or behind that."""
-        *_, q_before, q = self.controls
+    def ends(self, accept_m: float, reach_m: float) -> tuple[Vec3, tuple[Vec3, Vec3]]:
+        """Where the vehicle may be when the curve ends for it: behind its end; and past that, as
+        the curve and as its chord lead there."""
+        p, _, q_before, q = self.controls
         left_m = max(accept_m, _LAG_M)
-        fast_m_s = self._allowed_m_s(1.0, motion)
         steps = (1.0 - step / _STEPS for step in range(1, _STEPS + 1))
         share = next((s for s in steps if math.dist(self.at(s), q) >= left_m), 0.0)
-        behind = _blossom(self.controls, share, share, share)
-        on = _blossom(self.controls, share, share, 1.0)
-        if self.onward is None:
-            speed_m_s = motion.arrival_m_s(left_m)
-            return (*moving(behind, behind, on, speed_m_s), *moving(q, q_before, q, speed_m_s))
-        found = (
-            *moving(behind, behind, on, max(fast_m_s, self._allowed_m_s(share, motion))),
-            *moving(q, q_before, q, fast_m_s),
-        )
-        to_ned = self.onward.to_ned
-        return tuple(Moving(one.pos_ned, one.way, one.speed_m_s, to_ned) for one in found)
-
-    def overshoots(self, entry_m_s: float, motion: Motion) -> Vec3:
-        """Where a vehicle that begins it too fast for its bends would brake to what they allow."""
-        brake_m_s2 = 0.5 * motion.accel_m_s2
-        places = [self.at(step / _STEPS) for step in range(_STEPS + 1)]
-        least = self._allowed_m_s(1.0, motion)
-        for step in range(_STEPS - 1, -1, -1):
-            way_m = math.dist(places[step], places[step + 1])
-            braked = math.sqrt(least * least + 2.0 * brake_m_s2 * way_m)
-            least = min(self._allowed_m_s(step / _STEPS, motion), braked)
-        too_far_m = max(0.0, (entry_m_s * entry_m_s - least * least) / (2.0 * brake_m_s2))
-        p, q, *_ = self.controls
-        way = between(p, q)
-        size = math.hypot(*way)
-        return ahead(p, way, too_far_m / size) if size > 0.0 else p
-
-    def _allowed_m_s(self, share: float, motion: Motion) -> float:
-        """Half the acceleration bends the way (vehicle-sim): at the speed v by v^2 / r."""
-        a, b, c = (_blossom(self.controls, share, *ends) for ends in ((0, 0), (0, 1), (1, 1)))
-        first, last = between(a, b), between(b, c)
-        # The derivatives are 3 (b(t, t, 1) - b(t, t, 0)) and 6 (b(t, 1, 1) - 2 b(t, 0, 1) + ...).
-        along = _mixed(first, last, share)
-        change = between(first, last)
-        flat = math.hypot(along[0], along[1])
-        cross = abs(along[0] * change[1] - along[1] * change[0]) * 2.0 / 3.0
-        if cross == 0.0 or flat == 0.0:
-            return motion.speed_m_s
-        return min(motion.speed_m_s, math.sqrt(0.5 * motion.accel_m_s2 * flat**3 / cross))
+        return self.at(share), (past(q_before, q, reach_m), past(p, q, reach_m))
 
 
 def splines(starts: Sequence[Vec3], to_ned: Vec3, neighbours: Neighbours) -> tuple[Spline, ...]:

@@ -1,7 +1,7 @@
 """How long a mission is in the air: item after item, with every repetition of its jumps.
 
 An estimate that is rather too long.  A vehicle stops at every place, flies its legs at its own
-speed and slows down for a place as gently as the verifier thinks (`Motion`), climbs and descends at
+speed and slows down for a place gently (`_BRAKE_SHARE`), climbs and descends at
 its own speeds, and stays for `ITEM_S` where it comes to.  Of five recorded missions
 (`tests/unit/plan/test_flight_time.py`) the estimate is 1.00 to 1.27 times what four took; the fifth
 is a return from over home, which an ArduCopter flies without the climb: 1.54 times.
@@ -22,7 +22,6 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.plan import returns
-from gcs.plan.carry import Motion
 from gcs.plan.change_speed import climb_and_descent_m_s, leg_speed_m_s
 from gcs.plan.circles import circle_ends, entries
 from gcs.plan.commands import KINDS, Kind
@@ -54,7 +53,7 @@ vehicle-sim does, and from memory of both (ArduCopter's MIS_OPTIONS may let it g
 _CLIMB_M_S2: Final = 1.0
 """WP_ACC_Z as delivered; the recorded PX4 climbs no more gently."""
 _BRAKE_SHARE: Final = 0.6
-"""Of its acceleration that it brakes with (`Motion`)."""
+"""Of its acceleration that it brakes with (vehicle-sim; the real ones recorded here are faster)."""
 _JERK_M_S3: Final[dict[AutopilotName, float]] = {"px4": 4.0, "ardupilot": 1.0}
 """MPC_JERK_AUTO, WP_JERK as delivered."""
 _CIRCLE_RAD_S: Final = math.radians(20.0)
@@ -246,8 +245,7 @@ class TimeWalk:
             _CIRCLE_RAD_S * reach_m,
         )
         self._time_s += abs(turns) * 2.0 * math.pi * reach_m / speed_m_s
-        motion = Motion(speed_m_s, settings.accel_m_s2)
-        self._pos_ned = circle_ends(begun, centre_ned, radius_m, turns, motion)[0].pos_ned
+        self._pos_ned = circle_ends(begun, centre_ned, radius_m, turns, 0.0)[0][0]
 
     def _leg_s(self, to_ned: Vec3) -> float:
         """Straight there: over the ground, and up or down meanwhile."""

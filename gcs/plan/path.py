@@ -24,7 +24,6 @@ from dataclasses import dataclass, replace
 
 from gcs.frames import Vec3
 from gcs.plan import commands, returns
-from gcs.plan.carry import Motion, Moving, not_stopped, still_moving
 from gcs.plan.change_speed import leg_speed_m_s
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
@@ -45,7 +44,8 @@ from gcs.plan.legs import (
 )
 from gcs.plan.model import Item, Plan
 from gcs.plan.onward import ways_on
-from gcs.plan.turns import arrivals, blend, fewer, turning_places
+from gcs.plan.overshoot import curve_reach_m, overshoot_m, past
+from gcs.plan.turns import blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
 _VISITS_MAX = 32
@@ -54,14 +54,15 @@ _UNFLYABLE: dict[Flown | None, ProblemKind] = {
     Flown.FENCE_PART: ProblemKind.NOT_OF_A_MISSION,
     Flown.REFUSED: ProblemKind.REFUSED,
 }
-_CURVE_BESIDE_M = 1.0
-"""So far beside a curve the vehicle may be."""
+_CURVE_BESIDE_M = 1.5
+"""So far beside a curve the vehicle may be: 1.0 to 1.5 m were recorded of ArduCopter 4.7 (2.0 with
+twice its acceleration)."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Here:
-    """Where the vehicle is when an item begins: at `pos_ned`, or at one of `also`, and how it moves
-    there.
+    """Where the vehicle is when an item begins: at `pos_ned`, or at one of `also`; its speed may
+    carry it on to `past`.
 
     `before_ned` is where the waypoint leg that ended at `pos_ned` began, `before_curved` whether
     it was a curve; None after anything else.  `rests`: a curve may begin at rest.
@@ -69,10 +70,9 @@ class _Here:
 
     pos_ned: Vec3
     also: tuple[Vec3, ...] = ()
-    moving: tuple[Moving, ...] = ()
+    past: tuple[Vec3, ...] = ()
     before_ned: Vec3 | None = None
     before_curved: bool = False
-    leaves_circle: bool = False
     rests: bool = True
 
     @property
@@ -100,14 +100,14 @@ class PathWalk:
         self._ground = ground
         self._places = ItemPlaces(ground)
         settings = ground.settings
-        self._motion = Motion(settings.speed_m_s, settings.accel_m_s2, settings.jerk_m_s3)
+        self._speed_m_s = settings.speed_m_s
         self._legs: dict[Leg, None] = {}
         self._circles: dict[LoiterCircle, None] = {}
         self._regions: dict[Region, None] = {}
         self._problems: dict[Problem, None] = {}
-        self._seen: set[tuple[int, _Here, Motion]] = set()
+        self._seen: set[tuple[int, _Here, float]] = set()
         self._visits: dict[int, int] = {}
-        self._branches: list[tuple[int, _Here, Motion]] = []
+        self._branches: list[tuple[int, _Here, float]] = []
 
     def steps(self) -> Iterator[None]:
         """One item a step; after the last one `path` is whole."""
@@ -116,9 +116,9 @@ class PathWalk:
         begin = self._ground.begin_item
         for item in self._plan.items[:begin]:
             self._change_speed(item, faster_only=True)
-        self._branches.append((begin, self._begin(), self._motion))
+        self._branches.append((begin, self._begin(), self._speed_m_s))
         while self._branches:
-            index, here, self._motion = self._branches.pop()
+            index, here, self._speed_m_s = self._branches.pop()
             try:
                 yield from self._follow(index, here)
             except _DeadEndError:
@@ -151,9 +151,9 @@ class PathWalk:
     def _follow(self, index: int, here: _Here) -> Iterator[None]:
         """Walk from item `index`, entered at `here`, to the end of the mission or to where this
         walk was before."""
-        while index < len(self._plan.items) and (index, here, self._motion) not in self._seen:
+        while index < len(self._plan.items) and (index, here, self._speed_m_s) not in self._seen:
             yield
-            self._seen.add((index, here, self._motion))
+            self._seen.add((index, here, self._speed_m_s))
             self._visits[index] = self._visits.get(index, 0) + 1
             if self._visits[index] > _VISITS_MAX:
                 raise self._problem(index, ProblemKind.TOO_MANY_WAYS)
@@ -178,7 +178,7 @@ class PathWalk:
                     raise self._problem(index, ProblemKind.NOT_FLOWN)
             index += 1
         if index == len(self._plan.items):
-            self._stop(index - 1, here)
+            self._starts(index - 1, here, here.pos_ned)
 
     def _problem(self, index: int, kind: ProblemKind, why: str = "") -> _DeadEndError:
         label = commands.item_label(index, self._plan.items[index].command)
@@ -206,29 +206,25 @@ class PathWalk:
             aim_ned = ends[0] if aim_ned is None else aim_ned
             self._regions[Region(index, kind, starts, ends, aim_ned)] = None
 
-    def _starts(self, index: int, here: _Here, aim_ned: Vec3 | None = None) -> tuple[Vec3, ...]:
-        """Where it is, and where its speed may carry it on its way to `aim_ned`; None: to any."""
-        carried = (
-            one.carried(self._motion, aim_ned)
-            for one in here.moving
-            if aim_ned is None or one.onward_ned in (None, aim_ned)
-        )
-        return self._with(index, here, tuple(carried), here.pos_ned if aim_ned is None else aim_ned)
-
-    def _with(
-        self, index: int, here: _Here, carried: tuple[Vec3, ...], aim_ned: Vec3
-    ) -> tuple[Vec3, ...]:
-        """Where it is, and `carried`.  That is judged at once: what begins at a place may be as
-        near to a boundary as the place is, and it was at none of these yet."""
-        also = fewer((*here.also, *carried), without=here.pos_ned)
+    def _starts(self, index: int, here: _Here, aim_ned: Vec3) -> tuple[Vec3, ...]:
+        """Where it is, and where its speed may carry it.  That is judged at once: what begins at a
+        place may be as near to a boundary as the place is, and it was at none of these yet."""
+        also = fewer((*here.also, *here.past), without=here.pos_ned)
         self._region(index, RegionKind.TURN, here.places, also, aim_ned)
         return (here.pos_ned, *also)
 
-    def _stop(self, index: int, here: _Here) -> None:
-        """The mission's end: from a circle it goes on until it has braked."""
-        if here.leaves_circle:
-            stops = tuple(one.stopped(self._motion) for one in here.moving)
-            self._region(index, RegionKind.ENTRY, here.places, fewer(stops), here.pos_ned)
+    def _past(self, starts: tuple[Vec3, ...], to_ned: Vec3) -> tuple[Vec3, ...]:
+        """Where a vehicle that comes from `starts` is carried to past `to_ned`."""
+        reach_m = self._overshoot_m
+        return fewer(tuple(past(start, to_ned, reach_m) for start in starts), without=to_ned)
+
+    def _curve_reach_m(self, from_ned: Vec3, to_ned: Vec3) -> float:
+        own_m, settings = self._overshoot_m, self._ground.settings
+        return max(own_m, curve_reach_m(from_ned, to_ned, self._speed_m_s, settings.accel_m_s2))
+
+    @property
+    def _overshoot_m(self) -> float:
+        return overshoot_m(self._ground.autopilot, self._speed_m_s)
 
     # ---------------------------------------------------------------------------- items
 
@@ -239,7 +235,7 @@ class PathWalk:
         target = self._plan.index_of(item.params[0])
         if target is None:
             raise self._problem(index, ProblemKind.JUMP_NOWHERE)
-        self._branches.append((target, here, self._motion))
+        self._branches.append((target, here, self._speed_m_s))
 
     def _change_speed(self, item: Item, *, faster_only: bool = False) -> None:
         """DO_CHANGE_SPEED of the legs; below zero: its own speed again.
@@ -249,11 +245,11 @@ class PathWalk:
         speed_m_s = leg_speed_m_s(item, self._ground.autopilot)
         if speed_m_s is not None:
             own_m_s = self._ground.settings.speed_m_s
-            least_m_s = self._motion.speed_m_s if faster_only else 0.0
+            least_m_s = self._speed_m_s if faster_only else 0.0
             changed_m_s = max(speed_m_s, least_m_s)
             if speed_m_s <= 0.0:
-                changed_m_s = max(own_m_s, self._motion.speed_m_s)
-            self._motion = replace(self._motion, speed_m_s=changed_m_s)
+                changed_m_s = max(own_m_s, self._speed_m_s)
+            self._speed_m_s = changed_m_s
 
     def _move(self, index: int, item: Item, here: _Here) -> _Here:
         match flown_as(item.command, self._ground.autopilot):
@@ -273,33 +269,25 @@ class PathWalk:
     def _straight(self, index: int, item: Item, here: _Here) -> _Here:
         aims = self._aims(item, here)
         to_ned = self._leg(index, LegKind.STRAIGHT, here.pos_ned, aims[0])
-        starts = self._starts(index, here, to_ned if len(aims) == 1 else None)
+        starts = self._starts(index, here, to_ned)
         self._region(index, RegionKind.TURN, starts, aims)
         if here.before_ned is not None and self._ground.autopilot == "ardupilot":
             accept_m = self._ground.settings.accept_m
             ends = blend(here.before_ned, here.pos_ned, to_ned, accept_m)
             self._region(index, RegionKind.TURN, (ends[0], here.pos_ned), (ends[1],))
         fast = item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_SPLINE_WAYPOINT)
-        turning = self._turning(item, starts, to_ned, here)
-        also = fewer((*turning.also, *aims[1:]), without=to_ned)
-        return replace(turning, also=also, before_ned=here.pos_ned if fast else None)
+        also = fewer((*self._turning(item, starts, to_ned), *aims[1:]), without=to_ned)
+        past_it = self._past(starts, to_ned)
+        return _Here(to_ned, also, past_it, before_ned=here.pos_ned if fast else None)
 
-    def _turning(self, item: Item, starts: tuple[Vec3, ...], to_ned: Vec3, here: _Here) -> _Here:
-        """Where it is, and how it moves, when it turns at `to_ned`."""
+    def _turning(self, item: Item, starts: tuple[Vec3, ...], to_ned: Vec3) -> tuple[Vec3, ...]:
+        """Where it may be when it turns at `to_ned`, beside that."""
         settings = self._ground.settings
         accept_m = settings.accept_m
         own_m = item.params[1]
         if self._ground.autopilot == "px4" and item.command == Cmd.NAV_WAYPOINT and own_m > 0.0:
             accept_m = own_m
-        radii = accept_m, settings.accept_up_m
-        leg_m = math.dist(here.pos_ned, to_ned) - accept_m - settings.accept_m
-        left = still_moving(here.moving, self._motion, leg_m, to_ned)
-        also = turning_places(starts, to_ned, *radii)
-        entry_m_s = max((one.speed_m_s for one in here.moving), default=0.0)
-        found = arrivals(starts, to_ned, *radii, self._motion, entry_m_s)
-        stay_s = item.params[0] if item.command in (Cmd.NAV_WAYPOINT, Cmd.NAV_LOITER_TIME) else 0.0
-        slowed_m_s = self._motion.slowed_m_s(stay_s) if stay_s > 0.0 else 0.0
-        return _Here(to_ned, also, (*not_stopped(found, slowed_m_s), *left))
+        return turning_places(starts, to_ned, accept_m, settings.accept_up_m)
 
     def _climb(self, index: int, from_ned: Vec3, down_m: float) -> _Here:
         """Straight up; px4 counts a climb as done while something of it is left."""
@@ -319,11 +307,12 @@ class PathWalk:
         over_ned = (*self._places.horizontal(item, top.pos_ned), top.pos_ned[2])
         self._leg(index, LegKind.STRAIGHT, top.pos_ned, over_ned)
         self._region(index, RegionKind.TURN, top.places, (over_ned,))
-        return self._turning(item, top.places, over_ned, top)
+        also = self._turning(item, top.places, over_ned)
+        return _Here(over_ned, also, self._past(top.places, over_ned))
 
     def _land(self, index: int, item: Item, here: _Here) -> _Here:
         down_m = self._ground.home_ned[2]
-        starts = self._starts(index, here)
+        starts = self._starts(index, here, here.pos_ned)
         nominal = self._places.horizontal(item, here.pos_ned)
         spots = [place[:2] if is_here(item) else nominal for place in starts]
         overs = tuple((*at, place[2]) for at, place in zip(spots, starts, strict=True))
@@ -331,19 +320,22 @@ class PathWalk:
         self._region(index, RegionKind.TURN, starts, overs)
         grounds = tuple((*at, down_m) for at in dict.fromkeys(spots))
         self._leg(index, LegKind.DESCENT, overs[0], grounds[0])
-        near = self._turning(item, (*starts, *overs), overs[0], here).also
-        self._region(index, RegionKind.LANDING, (*overs, *near), grounds)
+        near = self._turning(item, (*starts, *overs), overs[0])
+        beside = self._past(starts, overs[0])
+        self._region(index, RegionKind.TURN, overs, beside)
+        self._region(index, RegionKind.LANDING, (*overs, *near, *beside), grounds)
         return _Here(grounds[0], grounds[1:])
 
     def _level_then_height(self, index: int, item: Item, here: _Here) -> _Here:
         """LOITER_TO_ALT: over the place at the height it has, then up or down; or straight."""
-        starts = self._starts(index, here)
         to_ned = self._places.place(item, here.pos_ned)
+        starts = self._starts(index, here, to_ned)
         overs = tuple((*to_ned[:2], place[2]) for place in starts)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, overs[0])
         self._leg(index, LegKind.STRAIGHT, overs[0], to_ned)
         self._region(index, RegionKind.TURN, starts, (*overs, to_ned))
-        return self._turning(item, (*starts, *overs), to_ned, here)
+        also = self._turning(item, (*starts, *overs), to_ned)
+        return _Here(to_ned, also, self._past(starts, to_ned))
 
     def _return(self, index: int, here: _Here) -> None:
         ground = self._ground
@@ -351,7 +343,7 @@ class PathWalk:
             raise self._problem(index, ProblemKind.NO_RETURN_HEIGHT)
         if not returns.straight(ground, self._plan):
             raise self._problem(index, ProblemKind.RETURN_ROUTE)
-        starts = self._starts(index, here)
+        starts = self._starts(index, here, here.pos_ned)
         for landing in returns.landing_places(ground, starts):
             way = returns.way_to(landing, ground, here.pos_ned)
             self._leg(index, LegKind.CLIMB, here.pos_ned, way.top_ned)
@@ -359,6 +351,8 @@ class PathWalk:
             self._leg(index, LegKind.DESCENT, way.over_ned, way.ground_ned)
             for region in returns.regions(landing, ground, starts):
                 self._region(index, RegionKind.RETURN, *region)
+            beside = self._past(starts, way.over_ned)
+            self._region(index, RegionKind.RETURN, (way.over_ned,), (*beside, way.ground_ned))
 
     def _turns(self, index: int, item: Item, here: _Here) -> _Here:
         centres = self._aims(item, here)
@@ -368,41 +362,37 @@ class PathWalk:
             raise self._problem(index, ProblemKind.NO_RADIUS)
         for centre in centres:
             self._circles[LoiterCircle(index, centre, abs(radius_m))] = None
-        starts = self._starts(index, here)
+        starts = self._starts(index, here, centre_ned)
         begun = entries(starts, centre_ned, abs(radius_m))
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, begun[0])
         around = way_on(starts, begun, centre_ned, abs(radius_m))
         self._region(index, RegionKind.ENTRY, starts, around)
         arc = first_arc(begun, centre_ned, radius_m)
         self._region(index, RegionKind.ENTRY, begun, arc, begun[0])
-        ends = circle_ends(begun, centre_ned, radius_m, turns, self._motion)
-        also = fewer(tuple(one.pos_ned for one in ends), without=ends[0].pos_ned)
-        moving = tuple(dict.fromkeys(ends))
-        return _Here(ends[0].pos_ned, also, moving, leaves_circle=True)
+        leaves, on = circle_ends(begun, centre_ned, radius_m, turns, self._overshoot_m)
+        return _Here(leaves[0], fewer(leaves, without=leaves[0]), fewer(on, without=leaves[0]))
 
     def _curve(self, index: int, item: Item, here: _Here) -> _Here:
         to_ned = self._places.place(item, here.pos_ned)
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, to_ned)
         onward, may_stop = ways_on(self._plan, index, self._places, self._ground.autopilot, to_ned)
         neighbours = Neighbours(here.before_ned, here.before_curved, here.rests, onward, may_stop)
-        stops = tuple(one.stopped(self._motion) for one in here.moving if here.rests)
-        starts = self._with(index, here, stops, to_ned)
+        if here.before_ned is not None and not here.before_curved:
+            reach_m = self._curve_reach_m(here.before_ned, here.pos_ned)
+            here = replace(here, past=(*here.past, past(here.before_ned, here.pos_ned, reach_m)))
+        starts = self._starts(index, here, to_ned)
         begins = starts if here.rests else (here.pos_ned,)
         found = splines(begins, to_ned, neighbours)
         first, *others = pieces(found, _CURVE_BESIDE_M)
         self._region(index, RegionKind.CURVE, starts, first, to_ned)
-        if here.before_curved:
-            entry_m_s = max((one.speed_m_s for one in here.moving), default=0.0)
-            past = fewer(tuple(way.overshoots(entry_m_s, self._motion) for way in found))
-            self._region(index, RegionKind.CURVE, starts, (*first, *others[0], *past), to_ned)
         for piece in others:
             self._region(index, RegionKind.CURVE, (), piece, to_ned)
         accept_m = self._ground.settings.accept_m
-        ends = tuple(
-            dict.fromkeys(one for way in found for one in way.arrives(accept_m, self._motion))
-        )
-        also = fewer(tuple(one.pos_ned for one in ends), without=to_ned)
-        return _Here(to_ned, also, ends, here.pos_ned, before_curved=True, rests=may_stop)
+        reach_m = self._curve_reach_m(here.pos_ned, to_ned)
+        ends = [way.ends(accept_m, reach_m) for way in found]
+        behind = fewer(tuple(place for place, _ in ends), without=to_ned)
+        on = fewer(tuple(place for _, both in ends for place in both), without=to_ned)
+        return _Here(to_ned, behind, on, here.pos_ned, before_curved=True, rests=may_stop)
 
     def _aims(self, item: Item, here: _Here) -> tuple[Vec3, ...]:
         """Where the item leads; one without a place of its own may lead to any of `here`."""

@@ -1,10 +1,9 @@
 """Where a vehicle is when it turns from a waypoint to the next.
 
-It does not fly to the waypoint: it turns as soon as it is near enough, and its speed carries it on
-towards the waypoint that it turned from, and past it (`carry.py`).  So from a set of places where
-it may begin, and where its speed may carry it from there, every place on its way lies in the hull
-of that set and the waypoint; the set where it turns next is the waypoint itself and the places
-where it enters the sphere of acceptance.
+It does not fly to the waypoint: it turns as soon as it is near enough, or a little past it
+(`overshoot.py`).  So from a set of places where it may begin, every place on its way lies in the
+hull of that set and the waypoint; the set where it turns next is the waypoint itself, the places
+where it enters the sphere of acceptance, and what is past the waypoint.
 
 PX4: mission_block.cpp, is_mission_item_reached_or_completed: horizontally within NAV_WAYPOINT's
 param 2 or NAV_ACC_RAD, vertically within NAV_MC_ALT_RAD; vehicle-sim takes the distance in space.
@@ -24,7 +23,6 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from gcs.frames import Vec3
-from gcs.plan.carry import Motion, Moving, all_round, moving
 
 WIDEST_RAD = math.radians(120.0)
 """From places that are seen from the waypoint under a wider angle it may turn all round it."""
@@ -53,37 +51,6 @@ def turning_places(
         for start, reach_m in zip(starts, reaches, strict=True)
     ]
     return fewer(tuple(found), without=to_ned)
-
-
-def arrivals(
-    starts: tuple[Vec3, ...],
-    to_ned: Vec3,
-    accept_m: float,
-    accept_up_m: float | None,
-    motion: Motion,
-    entry_m_s: float = math.inf,
-) -> tuple[Moving, ...]:
-    """How a vehicle that flies from `starts` to `to_ned` moves when it turns there.
-
-    `entry_m_s` is its speed at `starts`.  One that is near enough from its start moves as there.
-    """
-    reaches = [_turn_m(start, to_ned, accept_m, accept_up_m) for start in starts]
-    angle_rad = _widest_angle(starts, to_ned)
-    if angle_rad > WIDEST_RAD:
-        return all_round(to_ned, motion.arrival_m_s(max(reaches)))
-    longest_m = max(
-        0.0,
-        *(math.dist(a, to_ned) - reach_m for a, reach_m in zip(starts, reaches, strict=True)),
-    )
-    fastest_m_s = math.hypot(entry_m_s, math.sqrt(2.0 * motion.accel_m_s2 * longest_m))
-    wider = 1.0 / math.cos(0.5 * angle_rad)
-    found: list[Moving] = []
-    for start, reach_m in zip(starts, reaches, strict=True):
-        if math.dist(start, to_ned) > reach_m:
-            place = _rounded(_towards(start, to_ned, wider * reach_m))
-            speed_m_s = min(fastest_m_s, motion.arrival_m_s(wider * reach_m))
-            found += moving(place, start, to_ned, speed_m_s)
-    return tuple(dict.fromkeys(found))
 
 
 def _box_about(starts: tuple[Vec3, ...], to_ned: Vec3, reach_m: float) -> tuple[Vec3, ...]:

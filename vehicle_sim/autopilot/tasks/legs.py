@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from math import inf
+from dataclasses import replace
+from math import inf, sqrt
 from typing import Protocol
 
 from vehicle_sim.autopilot.control.demands import Demand, FlyTo, Situation, Task, Turner
 from vehicle_sim.autopilot.interface import Landed, Target
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.tasks.tasks import Land, TakeOff, distance
+from vehicle_sim.control_loops.trajectory import MotionLimits
 from vehicle_sim.numerics.vectors import Vec3
 
 _OVER_M = 1.0  # "over the landing place"
 _AT_HEIGHT_M = 0.3
+_NEARLY_M = 0.5
 
 
 class Leg(Protocol):
@@ -79,7 +82,23 @@ class Go:
         return s.time_ns >= self._until_ns
 
     def update(self, s: Situation, turner: Turner) -> Demand:
-        return FlyTo(self._place_ned, s.limits)
+        if self._stay_s > 0.0:
+            return FlyTo(self._place_ned, s.limits)
+        left_m = distance(s.pos_ned, self._place_ned) - self._accept_m
+        return FlyTo(self._place_ned, slowed_for_a_turn(s.limits, self._accept_m, left_m))
+
+
+def slowed_for_a_turn(limits: MotionLimits, accept_m: float, left_m: float) -> MotionLimits:
+    """So slow where it turns (`left_m` is 0) that it does not go on by more than `accept_m` in its
+    old direction, whatever the new one is.
+
+    A velocity v that becomes V, along a straight line and with the acceleration a, carries it on
+    by v |V - v| / 2a.  Both real autopilots slow down for their turns, too (recorded).
+    """
+    fast, accel = limits.speed_m_s, limits.accel_m_s2
+    turns_m_s = 0.5 * (sqrt(fast * fast + 8.0 * accel * (accept_m + _NEARLY_M)) - fast)
+    slow_m_s = sqrt(turns_m_s * turns_m_s + accel * max(0.0, left_m))
+    return replace(limits, speed_m_s=min(fast, slow_m_s))
 
 
 class GoToHeight:
