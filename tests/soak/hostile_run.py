@@ -347,9 +347,7 @@ class HostileRun:
             north, east, down = v.vel
             late_s = self.report_delay_ns / SECOND_NS
             self._say(
-                PositionSeen(
-                    v.reported(), (north, east, down), self.now_ns // MS_NS, late_s=late_s
-                )
+                PositionSeen(v.reported(), (north, east, down), self.now_ns // MS_NS, late_s=late_s)
             )
 
     def _send_again(self) -> None:

@@ -1,8 +1,8 @@
 """The point mass keeps to what the policy says of its kind, and is no kinder than that.
 
 Flying to a position that it was sent it takes all of `[braking]` for a hold, from the command on.
-On a path of its own it leads no farther past the end of its leg than `[approach]` or a recorded hold
-takes from there, whichever is the most.
+On a path of its own it leads no farther past the end of its leg than `[approach]` or a recorded
+hold takes from there, whichever is the most.
 """
 
 from __future__ import annotations
@@ -25,9 +25,7 @@ GOAL_M = 60.0
 FAST_M_S = 12.0
 
 
-def flying(
-    autopilot: str, cruise_m_s: float, mode: FlightMode = FlightMode.GUIDED
-) -> PointMass:
+def flying(autopilot: str, cruise_m_s: float, mode: FlightMode = FlightMode.GUIDED) -> PointMass:
     """Level to a place 60 m north; it acts on a hold after all of the time that it may take."""
     vehicle = PointMass(autopilot, DEFAULT, random.Random(7))
     vehicle.armed, vehicle.landed = True, LandedState.IN_AIR
