@@ -62,6 +62,8 @@ from tests.soak.point_mass import STEP_NS, STILL, TO_RETURN_UP_M, PointMass
 TICK_NS: Final = 50_000_000
 MS_NS: Final = 1_000_000
 SECOND_NS: Final = 1_000_000_000
+OLDEST_S: Final = 0.9
+"""The session hands on no position that is older than `position_age_s` when it comes."""
 SETTLED_S: Final = 3.0
 """So long after an outage of the link its effects may last, beside the time that the vehicle needs
 to brake: told to hold at last, at 9 m/s, it rests six seconds later."""
@@ -107,9 +109,8 @@ class HostileRun:
         self.positions: deque[Told] = deque(maxlen=8)
         braking = policy.braking_of(self.autopilot)
         late_s = dice.choice((0.0, 0.0, 0.3, 0.9)) * (braking.react_s - 0.1)
-        self.report_delay_ns = round(late_s * dice.random() * SECOND_NS)
-        self.up_delay_ns = round(late_s * SECOND_NS) - self.report_delay_ns
-        self.vehicle.hold_react_s = braking.react_s - late_s - 0.04
+        self.report_delay_ns = round(min(late_s * dice.random(), OLDEST_S) * SECOND_NS)
+        self.is_late_by(late_s)
         self.loss = dice.choice((0.0, 0.0, 0.1, 0.3))
         self.home_ned: Vec3 = (0.0, 0.0, 0.0)
         self.fence_on = True
@@ -133,6 +134,20 @@ class HostileRun:
         self._steps = 0
         self._items = 0
         self._clear_ns = 0
+
+    def is_late_by(self, late_s: float) -> None:
+        """Its reports are, and say so; and what it is told is, for the rest of this time.
+
+        That counts as the vehicle's own: it reacts the sooner, and slows down the sooner."""
+        up_s = max(0.0, late_s - self.report_delay_ns / SECOND_NS)
+        vehicle = self.vehicle
+        most_s = min(vehicle.braking.react_s, vehicle.pace.level.lag_s) - TICK_NS / SECOND_NS
+        up_s = min(up_s, most_s)
+        self.up_delay_ns = round(up_s * SECOND_NS)
+        vehicle.hold_react_s = vehicle.braking.react_s - up_s - 0.04
+        own_s = up_s + TICK_NS / SECOND_NS
+        level, vertical = vehicle.pace.level.lag_s, vehicle.pace.vertical.lag_s
+        vehicle.lags = (max(0.0, level - own_s), max(0.0, vertical - own_s))
 
     @property
     def vehicle_is_late(self) -> bool:
@@ -330,7 +345,10 @@ class HostileRun:
                 self._say(MissionSeen(self._items, self._items + len(v.path), not v.path))
         if n % 5 == 0 or v.speed_m_s > STILL:
             north, east, down = v.vel
-            self._say(PositionSeen(v.reported(), (north, east, down), self.now_ns // MS_NS))
+            late_s = self.report_delay_ns / SECOND_NS
+            self._say(
+                PositionSeen(v.reported(), (north, east, down), self.now_ns // MS_NS, late_s=late_s)
+            )
 
     def _send_again(self) -> None:
         for key, awaited in list(self._awaited.items()):

@@ -1,19 +1,19 @@
 """A vehicle that is a point: it does what the policy trusts its kind to do, at the worst.
 
-It gains speed on its way to a goal as fast as `[approach]` says, else far faster than any real one,
-brakes no harder than `[braking]` and `[approach]` promise and begins no earlier, flies past its
-goals by most of `[overshoot]`, and is wrong about where it is by all the error that the policy
-allows.  NED, metres, seconds; one step is 20 ms.
+Sent a position, it flies towards that as `[pace]` says that its autopilot does, `follow_per_s` and
+`follow_m_s2`, no faster than its own limit, and slows down as late as `lag_s` allows and no harder
+than `[approach]`.  Told to stop, it brakes no harder than `[braking]` promises and begins no
+earlier.  It gains speed far faster than any real one, and is wrong about where it is by all the
+error that the policy allows.  NED, metres, seconds; one step is 20 ms.
 
 It knows where it is from its estimate alone: what it reports is also what its guidance flies by, as
-in every autopilot.  `[approach]` and `[overshoot]` were recorded in such positions.
+in every autopilot.
 
-Its own guidance brakes as `[approach]` says.  Told to stop, by hold mode or by a landing, it
-brakes as `[braking]` says, but for two cases: on its way to a goal it flies no farther past that
-than it would have by itself, or than real ones were recorded to (`RECORDED_HOLDS`); and one that
-flies away from its goal, sent back at speed, brakes already, and goes on so.  That a vehicle does
-not brake worse when it is told to stop than it was going to by itself is an assumption of the
-policy; it is recorded up to 3 m/s.
+On a path of its own it brakes for the end of each leg as `[approach]` says.  Told to stop there, it
+flies no farther past that end than it would have by itself, or than real ones were recorded to
+(`RECORDED_HOLDS`); and one that flies away from it, sent back at speed, brakes already, and goes
+on so.  That a vehicle does not brake worse when it is told to stop than it was going to by itself
+is an assumption of the policy.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.effects import CommandKind, SendCommand
-from gcs.gate.policy.policy import Policy
+from gcs.gate.policy.policy import Pace, Policy
 from gcs.gate.states import FlightMode, LandedState
 
 STEP_NS: Final = 20_000_000
@@ -33,12 +33,16 @@ GAIN_M_S2: Final = 12.0
 """How fast it gains speed that a pilot or a client's velocities fly."""
 TO_RETURN_UP_M: Final = 10.0
 STILL: Final = 0.15
+OWN_PATHS: Final = (FlightMode.TAKEOFF, FlightMode.MISSION, FlightMode.RETURN)
 FORGOTTEN_S: Final = 3.0
 """ArduCopter flies no older velocity (GUID_TIMEOUT; from memory)."""
 ACCEPTED, DENIED = 0, 2
 RECORDED_HOLDS: Final = {"px4": (2.6, 3.1), "ardupilot": (3.0, 5.0)}
 """m/s and the metres that a real one took to stop from there, told to hold: PX4 1.14.3, ArduCopter
-4.7; see `[braking]` in gcs/gate/policy/default.toml."""
+4.7; slower than that, it takes as much less."""
+BESIDE_M: Final = 1.0
+BESIDE_M_S: Final = 1.0
+"""So far beside its leg, and leaving it so fast, it brakes for the end of the leg no more."""
 
 
 class PointMass:
@@ -49,7 +53,8 @@ class PointMass:
         self.policy, self.dice = policy, dice
         self.braking = policy.braking_of(autopilot)
         self.approach = policy.approach_of(autopilot)
-        self.overshoot = policy.overshoot_of(autopilot)
+        self.pace = policy.pace_of(autopilot)
+        self.lags = (self.pace.level.lag_s, self.pace.vertical.lag_s)
         self.cruise_m_s = dice.choice((1.0, 3.0, 5.0, 12.0))
         self.climb_m_s = dice.choice((0.7, 1.5, 3.0))
         self.pos: list[float] = [0.0, 0.0, 0.0]
@@ -71,9 +76,7 @@ class PointMass:
         self.hold_react_s = 0.0
         self.stubborn = False
         self.now_s = 0.0
-        self._leg_from: Vec3 = (0.0, 0.0, 0.0)
         self._acts_s = self._acts_v_s = 0.0
-        self._stopping = False
         self._brakes_as = (self.braking.a_brake_h_m_s2, self.braking.a_brake_v_m_s2)
         self._bearing = dice.uniform(0.0, math.tau)
         self._error: Vec3 = (0.0, 0.0, 0.0)
@@ -115,13 +118,7 @@ class PointMass:
         if pos_ned is None:
             self.velocity = v_ned
             return
-        streamed = self.velocity is not None
-        if self.setpoint != pos_ned or streamed:
-            if self.mode is FlightMode.GUIDED:
-                self._stops_first()
-            self._leg_from = self.reported()
-            self.setpoint = pos_ned
-        self.velocity = None
+        self.setpoint, self.velocity = pos_ned, None
 
     def hears_command(self, sent: SendCommand) -> int:
         """MAV_RESULT.  A stubborn vehicle refuses all but to stop: that it does is promised."""
@@ -148,7 +145,6 @@ class PointMass:
                     self._enter(FlightMode.TAKEOFF)
                 else:
                     self.setpoint, self.setpoint_s = self.path[0], 1e12
-                    self._leg_from = self.reported()
                     self._enter(FlightMode.GUIDED)
             case CommandKind.GUIDED:
                 stale = self.now_s - self.setpoint_s > 0.5
@@ -181,16 +177,11 @@ class PointMass:
             return
         if mode in (FlightMode.HOLD, FlightMode.LAND):
             self._told_to_stop()
-        self._stopping = False
-        if mode is not FlightMode.HOLD:
-            self._leg_from = self.reported()
-        if mode is FlightMode.GUIDED:
-            self._stops_first()
         self.mode = mode
 
     def _told_to_stop(self) -> None:
         """When it begins to brake, and how hard.  One that brakes already goes on with that."""
-        if self.mode in (FlightMode.HOLD, FlightMode.LAND) or self._stopping:
+        if self.mode in (FlightMode.HOLD, FlightMode.LAND):
             return
         b, v = self.braking, math.hypot(*self.vel[:2])
         self._acts_s = self._acts_v_s = self.now_s + max(0.0, self.hold_react_s)
@@ -205,44 +196,21 @@ class PointMass:
 
     def _room_to_stop_m(self, v: float) -> float:
         """So far it flies at the most, level, until it rests, told to at `v` m/s."""
-        goal, a = self._goal(), self.approach
-        if self.mode is FlightMode.OTHER or goal is None or not self._slows_down():
+        a = self.approach
+        if self.mode not in OWN_PATHS or not self.path or self.speed_m_s <= STILL:
             return math.inf
-        here = self.reported()
+        here, goal = self.reported(), self.path[0]
         away = (goal[0] - here[0], goal[1] - here[1])
         ahead_m = (away[0] * self.vel[0] + away[1] * self.vel[1]) / v if v > STILL else 0.0
+        fast_m_s, took_m = RECORDED_HOLDS[self.autopilot]
+        recorded_m = took_m * min(1.0, v / fast_m_s)
         own_m = v * a.react_s + v * v / 2.0 / a.a_brake_h_m_s2
         if ahead_m <= 0.0:  # away from its goal: it brakes already
-            return max(own_m, self._recorded_m(v))
+            return max(own_m, recorded_m)
         aside_m = math.sqrt(max(0.0, math.hypot(*away) ** 2 - ahead_m**2))
-        if aside_m > a.cross_track_m and v * aside_m > a.cross_track_m_s * math.hypot(*away):
+        if aside_m > BESIDE_M and v * aside_m > BESIDE_M_S * math.hypot(*away):
             return math.inf
-        return max(own_m, ahead_m + 0.9 * self._past_m(goal), self._recorded_m(v))
-
-    def _recorded_m(self, v: float) -> float:
-        fast_m_s, took_m = RECORDED_HOLDS[self.autopilot]
-        react_s, v = self.braking.react_s, min(v, fast_m_s)
-        a_m_s2 = fast_m_s * fast_m_s / 2.0 / (took_m - fast_m_s * react_s)
-        return v * react_s + v * v / 2.0 / a_m_s2
-
-    def _past_m(self, goal: Vec3) -> float:
-        """How far it may fly past a goal."""
-        if self.mode is not FlightMode.GUIDED:
-            return 0.0
-        leg_m = math.dist(self._leg_from[:2], goal[:2])
-        return min(self.overshoot.share_h * leg_m, self.overshoot.most_h_m)
-
-    def _stops_first(self) -> None:
-        """Sent elsewhere at speed, it stops as it would in hold mode before it flies there."""
-        if self.speed_m_s > STILL:
-            self._told_to_stop()
-            self._stopping = True
-
-    def _slows_down(self) -> bool:
-        """Is it on its way to a goal, so that it has kept its speed for stopping there?"""
-        if self.velocity is not None or self._stopping:
-            return False
-        return self._goal() is not None and self.speed_m_s > STILL
+        return max(own_m, ahead_m, recorded_m)
 
     def takes_over(self, mode: FlightMode, v_ned: Vec3) -> None:
         """Somebody else flies it, or the vehicle does something by itself."""
@@ -254,15 +222,6 @@ class PointMass:
         self.mission = []
 
     # ------------------------------------------------------------------------------ motion
-
-    def _goal(self) -> Vec3 | None:
-        match self.mode:
-            case FlightMode.GUIDED:
-                return self.setpoint
-            case FlightMode.TAKEOFF | FlightMode.MISSION | FlightMode.RETURN:
-                return self.path[0] if self.path else None
-            case _:
-                return None
 
     def step(self) -> None:
         """20 ms."""
@@ -295,49 +254,57 @@ class PointMass:
             slower = math.hypot(*self.velocity[:2]) < math.hypot(*self.vel[:2])
             a_h = b.a_brake_h_m_s2 if slower else GAIN_M_S2
             self._towards_velocity(self.velocity, a_h, b.a_brake_v_m_s2)
-            self._stopping = False
-            return
-        goal = self._goal()
-        if goal is None:
-            if self.mode is FlightMode.RETURN:
-                self._towards_velocity((0.0, 0.0, 0.7), GAIN_M_S2, GAIN_M_S2)
-            else:
-                a = self.approach
-                self._towards_velocity((0.0, 0.0, 0.0), a.a_brake_h_m_s2, a.a_brake_v_m_s2)
-            return
-        self._fly_to(goal)
-        near = math.dist(self.reported(), goal) < 0.4
-        if near and self.mode is not FlightMode.GUIDED:
-            self.path.pop(0)
-            self.items_flown += 1
-            self._leg_from = goal
-            if not self.path and self.mode is FlightMode.TAKEOFF:
-                self._enter(FlightMode.HOLD)
-            if not self.path and self.mode is FlightMode.MISSION:
-                self._enter(FlightMode.HOLD)
+        elif self.mode is FlightMode.GUIDED and self.setpoint is not None:
+            self._follows(self.setpoint)
+        elif self.path and self.mode is not FlightMode.GUIDED:
+            self._flies_its_leg(self.path[0])
+        elif self.mode is FlightMode.RETURN:
+            self._towards_velocity((0.0, 0.0, 0.7), GAIN_M_S2, GAIN_M_S2)
+        else:
+            a = self.approach
+            self._towards_velocity((0.0, 0.0, 0.0), a.a_brake_h_m_s2, a.a_brake_v_m_s2)
 
-    def _fly_to(self, goal: Vec3) -> None:
-        """Straight there, as fast as it can still stop, a little behind it, by its approach."""
-        a = self.approach
-        if self._stopping:
-            self._brakes(0.0)
-            self._stopping = self.speed_m_s > STILL
-            return
-        here = self.reported()
-        north, east = goal[0] - here[0], goal[1] - here[1]
+    def _follows(self, to: Vec3) -> None:
+        """Towards the position that it was sent; it slows down by first order, `lags` late."""
+        here, a = self.reported(), self.approach
+        north, east, down = to[0] - here[0], to[1] - here[1], to[2] - here[2]
         away_m = math.hypot(north, east)
-        past_m = 0.9 * self._past_m(goal)
-        v = min(self.cruise_m_s, _fastest(away_m + past_m, a.react_s, a.a_brake_h_m_s2))
+        v = min(self.cruise_m_s, _followed(away_m, self.pace.level))
+        w = min(self.climb_m_s, _followed(abs(down), self.pace.vertical))
+        n, e = (north / away_m, east / away_m) if away_m > 1e-9 else (0.0, 0.0)
+        wanted = (n * v, e * v, math.copysign(w, down))
+        level_s, vertical_s = (max(lag_s, STEP_S) for lag_s in self.lags)
+        apart = math.hypot(wanted[0] - self.vel[0], wanted[1] - self.vel[1])
+        ahead = n * self.vel[0] + e * self.vel[1]
+        a_h = min(a.a_brake_h_m_s2, apart / level_s)
+        if ahead < v and math.hypot(*self.vel[:2]) <= v:
+            a_h = GAIN_M_S2
+        a_v = min(a.a_brake_v_m_s2, abs(wanted[2] - self.vel[2]) / vertical_s)
+        if abs(self.vel[2]) < w and self.vel[2] * down >= 0.0:
+            a_v = a.a_brake_v_m_s2
+        self._towards_velocity(wanted, a_h, a_v)
+
+    def _flies_its_leg(self, goal: Vec3) -> None:
+        """Straight there, as fast as it can still stop by its approach."""
+        here, a = self.reported(), self.approach
+        north, east, down = goal[0] - here[0], goal[1] - here[1], goal[2] - here[2]
+        away_m = math.hypot(north, east)
+        v = min(self.cruise_m_s, _fastest(away_m, a.react_s, a.a_brake_h_m_s2))
         if away_m < 0.3:
             v = min(v, 0.5 * away_m)
         n, e = (north / away_m, east / away_m) if away_m > 1e-9 else (0.0, 0.0)
-        down = goal[2] - here[2]
         w = min(self.climb_m_s, _fastest(abs(down), a.react_s, a.a_brake_v_m_s2))
-        wanted = (n * v, e * v, math.copysign(w, down))
         faster = math.hypot(*self.vel[:2]) < v
         self._towards_velocity(
-            wanted, a.a_gain_h_m_s2 if faster else a.a_brake_h_m_s2, max(a.a_brake_v_m_s2, 0.1)
+            (n * v, e * v, math.copysign(w, down)),
+            GAIN_M_S2 if faster else a.a_brake_h_m_s2,
+            a.a_brake_v_m_s2,
         )
+        if math.dist(self.reported(), goal) < 0.4:
+            self.path.pop(0)
+            self.items_flown += 1
+            if not self.path and self.mode in (FlightMode.TAKEOFF, FlightMode.MISSION):
+                self._enter(FlightMode.HOLD)
 
     def _brakes(self, down_m_s: float) -> None:
         """As it was told to, level and vertically each from its own time on."""
@@ -379,3 +346,10 @@ class PointMass:
 def _fastest(distance_m: float, react_s: float, a_m_s2: float) -> float:
     """The speed from which it stops within the distance: v react + v^2 / 2a."""
     return a_m_s2 * (math.sqrt(react_s * react_s + 2.0 * distance_m / a_m_s2) - react_s)
+
+
+def _followed(left_m: float, pace: Pace) -> float:
+    """How fast its autopilot flies to a position so far away."""
+    p, a = pace.follow_per_s, pace.follow_m_s2
+    near_m = a / (p * p)
+    return p * left_m if left_m <= near_m else math.sqrt(2.0 * a * (left_m - near_m / 2.0))

@@ -40,7 +40,7 @@ from tests.soak.hostile_acts import ask_station, fly, hovers_at, mission
 from tests.soak.hostile_counts import Seen
 from tests.soak.hostile_letters import lettered
 from tests.soak.hostile_policies import POLICIES, policy_of
-from tests.soak.hostile_run import MS_NS, SECOND_NS, Awaited, Broken, HostileRun
+from tests.soak.hostile_run import MS_NS, OLDEST_S, SECOND_NS, Awaited, Broken, HostileRun
 from tests.soak.point_mass import PointMass
 from tests.soak.seeds import base_seed
 from tests.soaking import Counted
@@ -144,9 +144,8 @@ def test_who_takes_it_off_its_leg_while_it_gains_speed_finds_room_to_stop() -> N
         from_ned = (-20.0, dice.uniform(-37.0, 10.0), -20.0)
         run = begun(dice.choice(("px4", "ardupilot")), from_ned, REPLACING)
         late_s = run.vehicle.braking.react_s - 0.1
-        run.report_delay_ns = round(late_s * dice.uniform(0.3, 1.0) * SECOND_NS)
-        run.up_delay_ns = round(late_s * SECOND_NS) - run.report_delay_ns
-        run.vehicle.hold_react_s = 0.06
+        run.report_delay_ns = round(min(late_s * dice.uniform(0.3, 1.0), OLDEST_S) * SECOND_NS)
+        run.is_late_by(late_s)
         run.ask(GoTo((-20.0, 37.0, -20.0)))
         run.run(dice.uniform(0.8, 4.0))
         run.ask(BeginStream())

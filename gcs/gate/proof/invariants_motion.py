@@ -106,11 +106,17 @@ def streams_what_was_verified(edge: Edge) -> Iterator[str]:
 
 
 def leaves_room_for_a_hold(edge: Edge) -> Iterator[str]:
-    """6: the speed at which the vehicle is sent somewhere is one from which a hold ends inside."""
+    """6: the speed at which the vehicle is sent somewhere is one from which a hold ends inside.
+
+    Where the position is too old, what was sent before is sent on.
+    """
     after, paced = edge.after, edge.after.paced
-    if paced is None or after.paced_ns != edge.now_ns or after.verifier is None:
+    sent = [s.permit.pos_ned for s in edge.setpoints if s.permit.pos_ned is not None]
+    if not sent or edge.stale or after.verifier is None or after.pos_ned is None:
         return
-    assert after.pos_ned is not None
+    if paced is None or after.paced_ns != edge.now_ns or sent != [paced.target_ned]:
+        yield f"the vehicle is sent to {sent}, at no speed that was chosen"
+        return
     here_ned, verifier = after.pos_ned, after.verifier
     if verifier.predicted_stop(here_ned, STANDING, floor_applies=True) is not None:
         if math.hypot(*paced.v_ned) > CRAWL_M_S + EXACT_M:

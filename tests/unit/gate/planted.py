@@ -166,6 +166,14 @@ FAULTS = [
         "position dashing for the fence",
     ),
     planted(
+        "a breach that setpoints stop is not held later",
+        State.MOVING,
+        Event.BREACH,
+        (Branch(ends=End(OutcomeKind.ABORTED), do=(Action.BRAKE,), to=State.HOLDING),),
+        6,
+        "position dashing for the fence",
+    ),
+    planted(
         "a breach predicted by a late sample is swallowed",
         State.STALE,
         Event.BREACH,

@@ -157,7 +157,8 @@ class TestLanding:
         assert found is None
 
     def test_a_tower_beneath_counts_until_the_ground(self) -> None:
-        """Falling at 6 m/s it would go 8.4 + 36 / 19.6 = 10.24 m: from 4 m up, to the ground and no farther."""
+        """Falling at 6 m/s it would go 8.4 + 36 / 19.6 = 10.24 m: from 4 m up, to the ground
+        and no farther."""
         cellar = Zone("cellar", False, Circle((3.0, 4.0), 5.0), -30.0, -3.0)
         field = Zone("field", True, Circle((0.0, 0.0), 150.0))
         verifier = Verifier(DEFAULT, (field, cellar), "px4", HOME, origin_known=False)

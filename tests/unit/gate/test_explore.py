@@ -14,9 +14,10 @@ from functools import cache
 import numpy as np
 import pytest
 
+from gcs.frames import Vec3
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind
-from gcs.gate.machine import commanding
+from gcs.gate.machine import commanding, gate
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.rules import Branch
 from gcs.gate.machine.table import TABLE
@@ -170,6 +171,18 @@ def test_an_ardupilot_that_is_armed_again_in_the_same_guided_mode_is_found(
     assert fault is not None
     assert "in which it was armed before" in fault.objection.sentence
     assert fault.trace[-1][0] == "ask: arm"
+
+
+def test_a_goal_that_is_sent_bare_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def bare(_turn: Turn, goal_ned: Vec3, _beside_ned: Vec3 | None = None) -> Vec3:
+        return goal_ned
+
+    monkeypatch.setattr(gate, "towards", bare)
+    fault = Explorer(WORLDS["px4"]).explore().fault
+    assert fault is not None
+    assert fault.objection.invariant == 6
+    assert "at no speed that was chosen" in fault.objection.sentence
+    assert fault.trace[-1][0] == "tick"
 
 
 def test_the_trace_is_the_shortest_there_is() -> None:
