@@ -376,8 +376,8 @@ class Session:
                 return self._vehicles.each(lambda each: each.stop_transfer(request_id))
             case StreamOver(sysid, request_id):
                 slot = self._vehicles.slot_of(sysid)
-                ended = AskGate(request_id, EndStream())
-                return [For(FIRST_SLOT if slot is None else slot, (ended,))]
+                end = AskGate(request_id, EndStream())
+                return [For(FIRST_SLOT if slot is None else slot, (end,))]
             case Decide():
                 return self._operators.verdict(item, vehicle.sysid, now_ns)
             case Tell():

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.effects import ToVehicle
+from gcs.bridge.effects import Answers, ToVehicle
 from gcs.wire.messages import MissionAck
-from tests.unit.bridge.test_bridge import HEARTBEAT, HOVERING, Answers, S, Table, of
+from tests.unit.bridge.test_bridge import HEARTBEAT, HOVERING, S, Table, of
 
 LIST = mavlink.MAVLink_mission_request_list_message(1, 1, 0)
 
