@@ -304,7 +304,7 @@ def test_a_speed_that_an_item_asks_for_counts_from_there_on() -> None:
 def test_a_loop_of_two_near_places_comes_to_an_end() -> None:
     """PX4's random mission 77: two LOITER_TIME 2.5 m apart, and a jump back."""
     back = replace(item(177, 0, 0, 0.0, 2.0, 1.0), frame=Frame.MISSION)
-    quick = ground("px4", replace(TWO_METRES, speed_m_s=5.0, accel_m_s2=3.0, jerk_m_s3=4.0))
+    quick = ground("px4", replace(TWO_METRES, speed_m_s=5.0, accel_m_s2=3.0))
     flown = path(quick, item(19, 68, -31), item(19, 52.7, 0.1), item(19, 50.4, 1.1), back)
     assert flown.problems == ()
     assert all(math.hypot(*point[:2]) < 100.0 for one in flown.regions for point in one.points)

@@ -45,7 +45,7 @@ def recorded(who: AutopilotName) -> list[dict[str, Any]]:
 
 def predicted(flight: dict[str, Any], who: AutopilotName) -> FlightPath:
     params: dict[str, float] = flight["params"]
-    told = {NAMES[name]: value for name, value in params.items() if name in NAMES}
+    told: dict[str, Any] = {NAMES[name]: value for name, value in params.items() if name in NAMES}
     _, *home, _ = flight["track"][0][:4]
     items = []
     for number, (command, north, east, up, *rest) in enumerate(flight["items"], start=1):
