@@ -1,7 +1,7 @@
 """What a flight path is made of, in the vehicle's local frame: local NED, metres.
 
 The *legs* are what the items ask for, for people to read.  A vehicle does not fly them exactly: it
-turns before a waypoint, flies a curve, or begins where it was carried to.  Where it may be instead
+turns before a waypoint, flies a curve, or goes on past its place.  Where it may be instead
 is told by *regions*; a region is every point of the convex hull of a few points.
 """
 
@@ -148,8 +148,6 @@ class FlightSettings:
     """Its acceleration on legs (WPNAV_ACCEL, MPC_ACC_HOR)."""
     return_climb_m: float = 0.0
     """A return climbs so much at least (RTL_CLIMB_MIN)."""
-    jerk_m_s3: float = math.inf
-    """What limits the change of its acceleration on legs (MPC_JERK_AUTO)."""
     climb_m_s: float = 1.5
     """How fast it climbs (MPC_TKO_SPEED or MPC_Z_V_AUTO_UP, the slower one; WP_SPD_UP)."""
     descend_m_s: float = 1.5

@@ -13,10 +13,10 @@ from typing import Final
 from gcs.frames import Vec3
 from gcs.plan.model import AutopilotName
 
-LATE_S: Final[dict[AutopilotName, float]] = {"px4": 0.24, "ardupilot": 0.1}
-"""Metres past the place for each m/s, beside `LEAST_M`: 1.3 times the worst recorded (0.18 s: PX4
-at 8 and 12 m/s; 0.075 s: ArduCopter at 9 m/s), whatever the turn, the acceleration that the vehicle
-flies with, and its radius of acceptance."""
+LATE_S: Final[dict[AutopilotName, float]] = {"px4": 0.2, "ardupilot": 0.1}
+"""Metres past the place for each m/s, beside `LEAST_M`: 1.3 times the worst recorded (0.15 s: PX4
+at 8 m/s with 5 m/s^2; 0.075 s: ArduCopter at 9 m/s), whatever the turn, the acceleration that the
+vehicle flies with, and its radius of acceptance."""
 LEAST_M: Final = 0.3
 
 

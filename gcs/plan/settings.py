@@ -16,7 +16,6 @@ USUAL: dict[AutopilotName, FlightSettings] = {
         return_low_within_m=10.0,
         speed_m_s=5.0,
         accel_m_s2=3.0,
-        jerk_m_s3=4.0,
         climb_m_s=1.5,
         descend_m_s=1.5,
         land_m_s=0.7,

@@ -41,6 +41,7 @@ NO_SPACE = 4
 KEPT_M = 0.1
 """A point of the track that is no farther from the line of its neighbours is not kept."""
 RESTS_S = 6.0
+NEVER_GOES_ON_S = 30.0
 MOVES_M = 2.0
 """A PX4 at rest wanders by up to 1.6 m about its place: its estimate does."""
 
@@ -238,7 +239,7 @@ def _until_over(vehicle: Vehicle, items: tuple[Item, ...]) -> None:
         if not vehicle.armed and vehicle.now_s - began_s > 5.0:
             return
         done = len(items) - 1 in vehicle.reached and not lands
-        if done and vehicle.now_s - rests_since_s > RESTS_S:
+        if vehicle.now_s - rests_since_s > (RESTS_S if done else NEVER_GOES_ON_S):
             return
     raise FailedError("it did not come to its end")
 

@@ -13,7 +13,8 @@ from typing import Final
 from gcs.frames import Vec3
 
 BESIDE_M: Final = 5.0
-"""A vehicle may be so far beside its path: overshoot, gusts and the error of its position."""
+"""A vehicle may be so far beside its path: overshoot, gusts and the error of its position.
+Of 79 recorded flights of real autopilots the farthest was 1.7 m (`tests/real/facts`)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,6 @@ QUANTITIES: dict[AutopilotName, tuple[Quantity, ...]] = {
         Quantity("cone_within_m", "RTL_MIN_DIST", needed=False),
         Quantity("speed_m_s", "MPC_XY_CRUISE", needed=False),
         Quantity("accel_m_s2", "MPC_ACC_HOR", needed=False),
-        Quantity("jerk_m_s3", "MPC_JERK_AUTO", needed=False),
     ),
     "ardupilot": (
         Quantity("accept_m", "WP_RADIUS_M"),
@@ -164,7 +163,6 @@ class Learning:
             return_type=int(values.get("return_type", usual.return_type)),
             speed_m_s=self._positive("speed_m_s", usual.speed_m_s),
             accel_m_s2=self._positive("accel_m_s2", usual.accel_m_s2),
-            jerk_m_s3=self._positive("jerk_m_s3", usual.jerk_m_s3),
             return_climb_m=values.get("return_climb_m", usual.return_climb_m),
             accept_up_m=values.get("accept_up_m", usual.accept_up_m),
             climb_m_s=min(climb_m_s, self._positive("take_off_m_s", climb_m_s)),

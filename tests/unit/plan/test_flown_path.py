@@ -15,7 +15,6 @@ from gcs.gate.airspace.verifier import verifier_for
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.refusal import Code, Refusal
-from gcs.plan.carry import Motion, Moving, still_moving
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, WITH_PLACE
 from gcs.plan.curves import Neighbours, Onward, pieces, splines
@@ -23,7 +22,7 @@ from gcs.plan.items import ROWS, Flown, flown_as
 from gcs.plan.legs import FlightPath, FlightSettings, Ground, LandingPlace, RegionKind
 from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
 from gcs.plan.path import flight_path
-from gcs.plan.turns import arrivals, blend, turning_places
+from gcs.plan.turns import blend, turning_places
 from gcs.plan.verify import Verification, verify
 from gcs.wire.ids import Cmd
 from vehicle_sim.autopilot.tasks.spline import curve as flown_curve
@@ -118,7 +117,7 @@ def test_an_arducopter_has_no_radius_of_a_waypoint_s_own() -> None:
 def test_a_vehicle_in_the_hull_of_its_turn_stays_in_the_region() -> None:
     """Any smooth way from where it turns towards the next waypoint, carried on by its speed."""
     flown = path(ground(), *CORNER)
-    (region,) = [one for one in flown.regions if one.item == 1]
+    region, *_ = [one for one in flown.regions if one.item == 1]
     hull = shapely.MultiPoint([point[:2] for point in region.points]).convex_hull
     dice = random.Random(1)
     for _ in range(20):
@@ -268,50 +267,7 @@ def test_a_spline_is_verified_by_its_curve_and_not_by_its_chord() -> None:
 
 # ---------------------------------------------------------------------- where speed carries
 
-QUICK = replace(TWO_METRES, speed_m_s=10.0, accept_m=4.68)
-"""Random mission 2352 of ArduCopter: WPNAV_RADIUS 4.68 m, as delivered 10 m/s and 2.5 m/s^2."""
-
-
-def test_a_vehicle_that_turns_back_swings_beside_its_next_leg() -> None:
-    """2352, in metres east and north of home: flown through (3.9, 56.7), (7.9, 51.2) and
-    (13.0, 42.2), 3 m beside the leg from (-0.9, 60.3) to (70.7, -66.9)."""
-    way = (item(16, -60, -4), item(16, 60.3, -0.9), item(16, -66.9, 70.7))
-    flown = path(ground("ardupilot", QUICK), *way)
-    tracks = [
-        shapely.MultiPoint([p[:2] for p in one.points]).convex_hull
-        for one in flown.regions
-        if one.item == 2
-    ]
-    for east, north in ((3.9, 56.7), (7.9, 51.2), (13.0, 42.2), (18.6, 31.4)):
-        assert beside((north, east, 0.0), tracks) < 0.5
-    near = mast(47.0, 16.5, 4.0)
-    assert refused(checked(ground("ardupilot", QUICK), near, *way)).zone == "mast"
-    slow = ground("ardupilot", replace(QUICK, speed_m_s=1.0))
-    assert checked(slow, near, *way).refusal is None
-
-
-@pytest.mark.parametrize("seed", range(30))
-def test_a_velocity_that_changes_along_a_straight_line_stays_in_the_hull(seed: int) -> None:
-    """A vehicle of the declared acceleration, from any velocity to any other, to a far place."""
-    dice = random.Random(seed)
-    speed, fast, accel = dice.uniform(1.0, 9.0), dice.uniform(2.0, 10.0), dice.uniform(1.0, 4.0)
-    motion = Motion(max(fast, speed), accel)
-    angle = dice.uniform(0.0, 2.0 * math.pi)
-    aim = (80.0 * math.cos(angle), 80.0 * math.sin(angle), 0.0)
-    start = Moving((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), speed)
-    carried = start.carried(motion, aim)
-    hull = shapely.MultiPoint([(0.0, 0.0), carried[:2], aim[:2]]).convex_hull
-    at, v = [0.0, 0.0], [speed, 0.0]
-    for _ in range(4000):
-        off = [a - b for a, b in zip(aim, at, strict=False)]
-        size = math.hypot(*off)
-        if size < 5.0:
-            break
-        change = [fast * o / size - w for o, w in zip(off, v, strict=True)]
-        share = min(1.0, 0.01 * accel / max(1e-9, math.hypot(*change)))
-        v = [w + share * c for w, c in zip(v, change, strict=True)]
-        at = [a + 0.01 * w for a, w in zip(at, v, strict=True)]
-        assert hull.distance(shapely.Point(at)) < 0.5
+QUICK = replace(TWO_METRES, speed_m_s=10.0)
 
 
 @pytest.mark.parametrize("command", [16, 82])
@@ -320,23 +276,15 @@ def test_no_vehicle_begins_from_where_it_swings_to(command: int, away_m: float) 
     """A way that begins near a boundary may be as near; a swing, or the part of a curve, not."""
     way = (item(command, 60, 0), item(command, 60, 60), item(16, 0, 60))
     on = ground("ardupilot", QUICK)
-    north_m = max(point[0] for one in path(on, *way).regions for point in one.points)
-    assert north_m > 62.0
+    north_m = path_north_m(path(on, *way))
+    assert north_m > 61.2
     found = checked(on, mast(north_m + away_m + 9e4, 30.0, 9e4), *way)
     assert refused(found).code is Code.TOO_CLOSE
     assert checked(on, mast(north_m + 3.0 + 9e4, 30.0, 9e4), *way).refusal is None
 
 
-def test_a_stay_takes_speed_away() -> None:
-    """0.6 of 2.5 m/s^2: after 2 s 3 m/s are gone; PX4's jerk takes 0.2 s of it."""
-    assert Motion(10.0, 2.5).slowed_m_s(2.0) == pytest.approx(3.0)
-    assert Motion(5.0, 3.0, 4.0).slowed_m_s(1.0) == pytest.approx(1.8 * 0.775)
-    quick = ground("ardupilot", QUICK)
-    last = item(16, 60, 60)
-    stays = path(quick, item(16, 60, 0, 10.0, 5.0), last)
-    goes_on = path(quick, item(16, 60, 0), last)
-    assert max(point[0] for one in goes_on.regions for point in one.points) > 62.0
-    assert max(point[0] for one in stays.regions for point in one.points) == 60.0
+def path_north_m(flown: FlightPath) -> float:
+    return max(point[0] for one in flown.regions for point in one.points)
 
 
 def test_a_speed_that_an_item_asks_for_counts_from_there_on() -> None:
@@ -344,11 +292,8 @@ def test_a_speed_that_an_item_asks_for_counts_from_there_on() -> None:
     way = (item(16, 60, 0), item(16, 0, 60), item(16, 60, 60))
 
     def widest(*items: Item) -> float:
-        """Of the ground tracks of the last leg's regions."""
-        flown = path(ground("ardupilot", QUICK), *items)
-        last = max(region.item for region in flown.regions)
-        tracks = [[p[:2] for p in one.points] for one in flown.regions if one.item == last]
-        return max(float(shapely.MultiPoint(track).convex_hull.area) for track in tracks)
+        """How far north of its two northern places it may be."""
+        return path_north_m(path(ground("ardupilot", QUICK), *items)) - 60.0
 
     assert widest(slow, *way) < 0.5 * widest(*way)
     assert widest(*way, slow) == widest(*way)
@@ -356,44 +301,13 @@ def test_a_speed_that_an_item_asks_for_counts_from_there_on() -> None:
     assert widest(slow, back, *way) == widest(*way)
 
 
-def test_a_short_spline_after_a_quick_one_is_begun_too_fast() -> None:
-    """ArduCopter's random mission 164: from 10 m/s into a curve of 12 m that turns back."""
-    before, at, to, after = (15.8, -5.6, 0.0), (-51.8, 12.9, 0.0), (-63.8, 15.3, 0.0), (40, 29, 0.0)
-    neighbours = Neighbours(before, True, False, (Onward(after, True),), False)
-    motion = Motion(10.0, 2.5)
-    for spline in splines((at,), to, neighbours):
-        fast = spline.overshoots(10.0, motion)
-        assert math.dist(fast, at) > 20.0
-        assert fast[0] < at[0], "on towards the south"
-        assert spline.overshoots(0.5, motion) == at
-
-
-def test_a_short_leg_leaves_something_of_the_old_direction_and_a_long_one_nothing() -> None:
-    motion = Motion(10.0, 2.5)
-    assert motion.settled_m == pytest.approx(30.8)
-    old = (Moving(HOME, (1.0, 0.0, 0.0), 4.0),)
-    (left,) = still_moving(old, motion, 15.4, (0.0, 15.4, 0.0))
-    assert (left.pos_ned, left.speed_m_s) == ((0.0, 15.4, 0.0), 2.0)
-    assert still_moving(old, motion, 31.0, (0.0, 31.0, 0.0)) == ()
-    (whole,) = still_moving(old, motion, -5.0, HOME)
-    assert whole.speed_m_s == 4.0
-
-
 def test_a_loop_of_two_near_places_comes_to_an_end() -> None:
     """PX4's random mission 77: two LOITER_TIME 2.5 m apart, and a jump back."""
     back = replace(item(177, 0, 0, 0.0, 2.0, 1.0), frame=Frame.MISSION)
-    quick = ground("px4", replace(TWO_METRES, speed_m_s=5.0, accel_m_s2=3.0, jerk_m_s3=4.0))
+    quick = ground("px4", replace(TWO_METRES, speed_m_s=5.0, accel_m_s2=3.0))
     flown = path(quick, item(19, 68, -31), item(19, 52.7, 0.1), item(19, 50.4, 1.1), back)
     assert flown.problems == ()
     assert all(math.hypot(*point[:2]) < 100.0 for one in flown.regions for point in one.points)
-
-
-def test_a_vehicle_arrives_as_fast_as_it_can_still_brake() -> None:
-    """0.6 of 2.5 m/s^2 over 4.68 m and the half metre that it may be behind: 3.9 m/s, as flown."""
-    motion = Motion(10.0, 2.5)
-    (found,) = arrivals(((0.0, 0.0, 0.0),), (60.0, 0.0, 0.0), 4.68, None, motion)
-    assert found.pos_ned == (55.32, 0.0, 0.0)
-    assert found.speed_m_s == pytest.approx(3.9)
 
 
 # -------------------------------------------------------------------------------- rings
@@ -412,9 +326,13 @@ def test_the_way_onto_a_circle_and_off_it_are_legs_and_regions() -> None:
     flown = path(ground("ardupilot", QUICK), turns, item(16, 80, 0))
     assert flown.legs[0].to_ned == pytest.approx((25, 0, -10))
     assert flown.legs[1].from_ned == pytest.approx((55, 0, -10))
-    turn = [one for one in flown.regions if one.kind is RegionKind.TURN][-1]
-    carried_m = max(east for _, east, _ in turn.points)
-    assert 9.6 < carried_m < 15.0, "4.3 m/s to the east, then 10 to the north: 4.3 * 11 / 5 m"
+    onward = [one for one in flown.regions if one.item == 1 and one.kind is RegionKind.TURN]
+    hulls = [shapely.MultiPoint([p[:2] for p in one.points]).convex_hull for one in onward]
+    for start in (55.0, 25.0):  # after 1.5 turns, and after the one that an ArduCopter flew
+        for short_rad in (-0.41, 0.41):  # the worst recorded
+            north = 40.0 + (start - 40.0) * math.cos(short_rad)
+            place = shapely.Point(north, 15.0 * math.sin(short_rad))
+            assert min(hull.distance(place) for hull in hulls) < 0.3
 
 
 def test_a_vehicle_that_gains_speed_on_a_circle_is_inside_it_at_first() -> None:
@@ -434,8 +352,8 @@ def test_from_the_middle_of_a_circle_it_may_begin_anywhere() -> None:
     around = way_on(places, begun, HOME, 10.0)
     outline = shapely.MultiPoint([point[:2] for point in around]).convex_hull
     assert outline.contains(shapely.Point(0.0, 0.0).buffer(9.999))
-    ends = circle_ends(begun, HOME, 10.0, 2.0, Motion(10.0, 2.5))
-    assert tuple(one.pos_ned for one in ends) == begun
+    leaves, _ = circle_ends(begun, HOME, 10.0, 2.0, 1.3)
+    assert set(begun) <= set(leaves)
 
 
 # ---------------------------------------------------------------------------- the return

@@ -65,6 +65,7 @@ def test_every_leg_and_circle_has_a_verdict_and_the_numbers_add_up() -> None:
         (1, "leg", 0.0),
         (2, "leg", 0.0),
         (2, "entry", 0.0),
+        (2, "turn", 0.0),
         (2, "circle", 4.0),
     ]
     assert found.refusal is None

@@ -43,12 +43,12 @@ def test_the_mission_that_was_verified_and_still_clears_is_the_gate_s_to_start()
 
 def test_how_the_vehicle_flies_its_legs_is_asked_for_and_nonsense_is_not_believed() -> None:
     quick = board()
-    quick.parameters |= {"MPC_XY_CRUISE": 8.0, "MPC_ACC_HOR": -1.0, "MPC_JERK_AUTO": 6.0}
+    quick.parameters |= {"MPC_XY_CRUISE": 8.0, "MPC_ACC_HOR": -1.0}
     job = start(quick).job
     assert isinstance(job, Start)
     assert job.facts is not None
     settings = job.facts.settings
-    assert (settings.speed_m_s, settings.accel_m_s2, settings.jerk_m_s3) == (8.0, 3.0, 6.0)
+    assert (settings.speed_m_s, settings.accel_m_s2) == (8.0, 3.0)
 
 
 @pytest.mark.parametrize("change", [{"z": 40.0}, {"y": 85465940}, {"command": 17}])
