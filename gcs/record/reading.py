@@ -30,10 +30,10 @@ _CHUNK = struct.Struct("<QQQII")
 _PIECE_BYTES = 16 * 1024
 MAX_CHUNK_BYTES = 128 << 20
 """A chunk that unpacks to more is damaged."""
-MAX_UNPACKED_BYTES = 32 << 20
+MAX_UNPACKED_BYTES = 16 << 20
 MAX_UNPACKED_SHARE = 30
-"""A file may unpack to so much, and to so many times its size; records of stations reach 10 times.
-lz4 can make 255 bytes of one."""
+"""A file may unpack to so much, and so many times what was read of it; records of stations reach 10
+times.  lz4 can make 255 bytes of one."""
 _KEPT_BYTES = 16 * 1024 * 1024
 """So much of a mapped file, once read, stays in memory."""
 
@@ -133,8 +133,8 @@ class Reading:
                 records = inflate(data[body:end])
                 condition.damaged += records is None
                 unpacked += len(records or b"")
-                if unpacked > MAX_UNPACKED_BYTES + MAX_UNPACKED_SHARE * condition.size:
-                    reason = f"its {condition.size} bytes unpack to more than {unpacked}: no record"
+                if unpacked > MAX_UNPACKED_BYTES + MAX_UNPACKED_SHARE * end:
+                    reason = f"{end} bytes of it unpack to {unpacked}: no station records so"
                     raise BadRecordError(self.path, reason)
                 yield from self._inner(records or b"")
             elif opcode == 0:

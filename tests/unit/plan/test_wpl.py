@@ -226,3 +226,8 @@ def test_a_real_jump_keeps_its_target() -> None:
     target = plan.index_of(plan.items[5].params[0])
     assert target == 1
     assert plan.items[target].place == Geographic(-35.364563, 149.163773, 60.0)
+
+
+def test_a_table_of_more_items_than_any_vehicle_stores_is_refused_at_once() -> None:
+    error = refused(wpl(*[FIRST] * 10_001))
+    assert "at most 10000 items" in str(error)

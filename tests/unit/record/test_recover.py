@@ -11,6 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import foxglove
+import lz4.frame  # type: ignore[import-untyped]  # the package has no types
 import pytest
 from foxglove.mcap import MCAPCompression, MCAPWriteOptions
 from hypothesis import given, settings
@@ -277,3 +278,16 @@ def records_of(data: bytes) -> Iterator[tuple[int, int, int]]:
         opcode, length = struct.unpack_from("<BQ", data, at)
         yield at, opcode, 9 + length
         at += 9 + length
+
+
+def test_a_chunk_that_unpacks_to_far_more_than_records_do_is_an_error(tmp_path: Path) -> None:
+    """A file of 0.1 MB that would hold a million messages."""
+    message = struct.pack("<BQHIQQ", Opcode.MESSAGE, 22, 1, 0, 0, 0)
+    body = message * 1_000_000
+    packed = lz4.frame.compress(body)
+    head = struct.pack("<QQQII", 0, 1, len(body), 0, 3) + b"lz4" + struct.pack("<Q", len(packed))
+    chunk = struct.pack("<BQ", Opcode.CHUNK, len(head) + len(packed)) + head + packed
+    path = tmp_path / "bomb.mcap"
+    path.write_bytes(b"\x89MCAP0\r\n" + chunk)
+    with pytest.raises(BadRecordError, match="unpack to 31000000"):
+        next(iter(Reading(path)))

@@ -68,7 +68,7 @@ def test_of_others_nothing_is_told() -> None:
         ("NAV_LAND", "", "in a client's mission: carried"),
         ("NAV_LAND", 'extra_denied = ["NAV_LAND"]', "in a client's mission: refused POLICY"),
         ("DO_DIGICAM_CONTROL", 'extra_denied = ["DO_DIGICAM_CONTROL"]', "denied by its name"),
-        ("DO_REPOSITION", "", "in a client's mission: refused, as no quadrotor"),
+        ("DO_REPOSITION", "", "in a client's mission: refused, as it is none that is verified"),
         ("DO_PARACHUTE", "", "in a client's mission: refused POLICY: It works the parachute"),
     ],
 )
