@@ -16,7 +16,7 @@ from gcs.plan import commands
 from gcs.plan.model import AutopilotName
 from gcs.plan.stored import kept
 from gcs.plan.wire import WireItem
-from gcs.wire.ids import MavFrame, MissionType
+from gcs.wire.ids import Cmd, MavFrame, MissionType
 
 _DATUM: dict[int, str] = {
     MavFrame.GLOBAL: "AMSL",
@@ -84,7 +84,9 @@ def _differences(ours: WireItem, theirs: WireItem, autopilot: AutopilotName) -> 
 
     has_place = commands.has_place(ours.command, ours.frame) and ours.frame != MavFrame.MISSION
     if not has_place:
-        if autopilot == "px4" and (ours.x, ours.y) != (theirs.x, theirs.y):
+        # PX4 gives a return back in the frame without a position, with what was a place as degrees.
+        numbers = autopilot == "px4" and ours.command != Cmd.NAV_RETURN_TO_LAUNCH
+        if numbers and (ours.x, ours.y) != (theirs.x, theirs.y):
             differ("param5, param6", (ours.x, ours.y), (theirs.x, theirs.y))
         return found
     datums = [_DATUM.get(frame, f"frame {frame}") for frame in (ours.frame, theirs.frame)]

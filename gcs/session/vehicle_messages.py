@@ -69,6 +69,8 @@ class VehicleMessages:
             work += parts.reasons.explained(answered, telemetry.custom_mode, now_ns)
         elif type(message) in PARAMETER_MESSAGES:
             work += parts.learn(parts.settings.heard(heard, telemetry, now_ns), telemetry)
+            if isinstance(message, m.ParamValue) and heard.compid == telemetry.compid:
+                work += parts.stop_parameters.heard(message, telemetry.autopilot)
             work += self._of_plans(telemetry, heard, now_ns)
         elif type(message) in MISSION_MESSAGES:
             work += self._of_plans(telemetry, heard, now_ns)

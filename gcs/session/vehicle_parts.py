@@ -31,6 +31,7 @@ from gcs.session.reasons import Reasons
 from gcs.session.return_places import ReturnPlaces
 from gcs.session.roster import Roster
 from gcs.session.settings import Settings
+from gcs.session.stop_parameters import StopParameters
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.uploaded_fence import FenceOnBoard
@@ -72,6 +73,7 @@ class VehicleParts:
             reads_thrust=policy.stream.tilt_deg > 0.0,
             reads_enforced=config.bridge or bool(config.clients),
         )
+        self.stop_parameters = StopParameters()
         self.missions = Missions(own, times)
         self.orbits = Orbits(times)
         self.returns = ReturnPlaces(own, times, policy)

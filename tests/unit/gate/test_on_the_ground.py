@@ -6,7 +6,7 @@ import pytest
 
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.effects import CancelCommand, CommandKind, Ruling
-from gcs.gate.inputs import ConditionChanged, OperatorLost
+from gcs.gate.inputs import CommandEnded, ConditionChanged, OperatorLost
 from gcs.gate.refusal import Code
 from gcs.gate.requests import (
     Abort,
@@ -310,6 +310,22 @@ class TestKeysOfThePolicy:
         assert refusal is not None
         assert refusal.sentence.startswith("another request is under way: MOVING, goal")
         assert "retarget" not in refusal.sentence
+
+
+def test_arming_has_its_whole_time_after_the_mode_that_it_needs() -> None:
+    """A PX4 that refuses again and again ends it, not the time that the mode took."""
+    script = landed_in(FlightMode.LAND)
+    request_id = script.ask(Arm())
+    script.wait(4.0)
+    script.heartbeat(mode=FlightMode.HOLD)
+    script.wait(4.0)
+    assert (script.commands()[-1], ended(script, request_id)) == (ARM, "")
+    script.feed(CommandEnded(request_id, ARM, 1, "High Accelerometer Bias"))
+    ending = script.outcome(request_id)
+    assert (ending.code, "High Accelerometer Bias" in ending.sentence) == (
+        Code.VEHICLE_REFUSED,
+        True,
+    )
 
 
 def test_an_arming_that_is_taken_back_is_not_sent_again() -> None:

@@ -47,11 +47,11 @@ def test_another_mission_is_one_that_was_not_verified(other: MissionCurrent) -> 
 
 
 def test_a_count_is_told_too_where_nothing_else_is() -> None:
-    """A PX4 1.14 without a mission sends no MISSION_CURRENT (recorded), and answers 0 items."""
+    """A PX4 1.14 without a mission sends no MISSION_CURRENT, and answers with 0 items."""
     part = MissionTold(Times())
     assert "has not told" in part.unverified(None)
     part.counted(0)
-    assert part.unverified(None) == ""
+    assert not part.unverified(None)
     part.heard(current(), None, 0, SECOND)
     part.counted(0)
     assert part.unverified(None) == NOT_VERIFIED

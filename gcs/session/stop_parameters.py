@@ -1,0 +1,89 @@
+"""Parameters that the vehicle stops by: what another station makes of them is told.
+
+The bounds of a stop in the policy were recorded with the values below.  Nothing is read for this:
+an autopilot tells every station what one of them sets, and who reads all parameters is heard too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Final
+
+from gcs.gate.effects import Level
+from gcs.protocol.autopilot import Autopilot
+from gcs.protocol.parameter_names import names_of
+from gcs.protocol.parameters import decode_value
+from gcs.session.work import Log
+from gcs.wire.ids import ParamType
+from gcs.wire.messages import ParamValue
+
+NODE: Final = "vehicle"
+
+RECORDED: Final[Mapping[str, Mapping[str, float]]] = {
+    "px4": {
+        "MPC_ACC_HOR": 3.0,
+        "MPC_ACC_HOR_MAX": 5.0,
+        "MPC_JERK_AUTO": 4.0,
+        "MPC_JERK_MAX": 8.0,
+        "MPC_TILTMAX_AIR": 45.0,
+        "MPC_XY_CRUISE": 5.0,
+        "MPC_XY_P": 0.95,
+        "MPC_XY_VEL_D_ACC": 0.2,
+        "MPC_XY_VEL_I_ACC": 0.4,
+        "MPC_XY_VEL_MAX": 12.0,
+        "MPC_XY_VEL_P_ACC": 1.8,
+    },
+    "ardupilot": {
+        "ATC_ANGLE_MAX": 30.0,
+        "GUID_OPTIONS": 0.0,
+        "GUID_TIMEOUT": 3.0,
+        "PSC_ANGLE_MAX": 0.0,
+        "PSC_JERK_NE": 5.0,
+        "PSC_NE_POS_P": 1.0,
+        "PSC_NE_VEL_D": 0.25,
+        "PSC_NE_VEL_I": 1.0,
+        "PSC_NE_VEL_P": 2.0,
+        "WP_ACC": 2.5,
+        "WP_JERK": 1.0,
+        "WP_SPD": 10.0,
+    },
+}
+"""By the newest names, of PX4 1.14.3 and ArduCopter 4.7 as the bounds were recorded."""
+
+TYPES: Final = frozenset(int(kind) for kind in ParamType)
+
+
+class StopParameters:
+    """Of one vehicle."""
+
+    def __init__(self) -> None:
+        self._values: dict[str, float] = {}
+
+    def heard(self, message: ParamValue, autopilot: Autopilot) -> list[Log]:
+        """PARAM_VALUE of its autopilot: a line where the value is news, and not the recorded."""
+        if message.param_type not in TYPES:
+            return []
+        for newest, recorded in RECORDED.get(autopilot.name, {}).items():
+            for name in names_of(newest):
+                if name.name == message.param_id:
+                    kind = ParamType(message.param_type)
+                    read = decode_value(message.param_value, kind, autopilot.param_encoding)
+                    return self._told(newest, float(read) * name.scale, recorded)
+        return []
+
+    def _told(self, name: str, value: float, recorded: float) -> list[Log]:
+        was = self._values.get(name)
+        self._values[name] = value
+        if not _differ(value, recorded if was is None else was):
+            return []
+        change = f"{name} is {value:g}" if was is None else f"{name} was {was:g} and is {value:g}"
+        if not _differ(value, recorded):
+            return [Log(Level.INFO, NODE, f"{change}, as when the bounds of a stop were recorded")]
+        text = f"{change}: the bounds of a stop were recorded with {recorded:g}, and may not hold"
+        return [Log(Level.WARNING, NODE, text)]
+
+
+def _differ(one: float, other: float) -> bool:
+    """Parameters are float32."""
+    return not math.isclose(one, other, rel_tol=1e-4, abs_tol=1e-6)
