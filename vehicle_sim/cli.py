@@ -35,7 +35,7 @@ METRES_PER_DEGREE: Final = 111_319.49
 SYSTEMS_MAX: Final = 250
 """Vehicles that can be told apart on one link; ids above are ground stations'."""
 STATION: Final = "udpout://127.0.0.1:14550"
-AIRFRAMES: Final = ("s500", "racer250")
+AIRFRAMES: Final = ("s500", "racer250", "sih")
 
 
 @dataclass(frozen=True, slots=True)

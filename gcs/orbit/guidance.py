@@ -28,7 +28,7 @@ TO_CIRCLE_PER_S: Final = 0.7
 """Of the distance from the circle, as a speed towards it."""
 LEARNS_PER_S2: Final = 0.15
 """What stays of that distance is learnt as one more speed towards the circle, such as that of a
-vehicle that lags more (`--offboard real`: 1.7 m outside 50 m at 10 m/s without it)."""
+vehicle that lags more (PX4: 1.7 m outside 50 m at 10 m/s without it)."""
 MOST_LEARNT: Final = 0.25
 """Of the speed."""
 MOST_ACROSS: Final = 0.5

@@ -49,8 +49,6 @@ JUDGED: Final = (
     Judged("px4", "D2_", "text: command denied .*", _J.RACE, "said as long as the command stands"),
     Judged("px4", "D2_", r"text: (\[cal\] progress|motion, retrying).*", _J.SIMULATOR,
            "the last of 20 tries with a noisy gyroscope"),
-    Judged("px4", "D3_", "8 COMMAND_LONG .*", _J.UNTOLD, "the same command is acked in others"),
-    Judged("px4", "D3_", "15 COMMAND_LONG .*", _J.NOT_BUILT, "autotune"),
     Judged("px4", "D[167]_|H6_", "text: Preflight Fail: .*(unstable|error)", _J.SIMULATOR,
            "the simulated estimator's velocity wanders at rest, and after a fall"),
     Judged("px4", "G1b_|G5_", "text: Failsafe activated", _J.NOT_BUILT,
@@ -58,8 +56,6 @@ JUDGED: Final = (
     Judged("px4", "G3_", r"6 (mode|armed): .*", _J.AIRFRAME, "has landed and disarmed already"),
     # ------------------------------------------------------------------------- ArduCopter
     Judged("ardupilot", "", "text: SIM Hit ground .*", _J.SIMULATOR, "SITL's own"),
-    Judged("ardupilot", "B[58]_", r"\d (mode|landed): .*", _J.SIMULATOR,
-           "SITL's receiver with a low throttle takes over; here no receiver is heard"),
     Judged("ardupilot", "C2_", "(4 landed: .*|text: Disarming motors)", _J.AIRFRAME,
            "is still coming down from the return"),
     Judged("ardupilot", "D2_", ".*", _J.SIMULATOR,

@@ -18,7 +18,7 @@ from vehicle_sim.autopilot.tasks.descent_rate import without_sticks_m_s
 from vehicle_sim.autopilot.tasks.follow import FOLLOW, Leader
 from vehicle_sim.autopilot.tasks.guided import Guided, SetpointStream
 from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_default
-from vehicle_sim.autopilot.tasks.tasks import Hold, Land, Level, Return, TakeOff
+from vehicle_sim.autopilot.tasks.tasks import Brake, Hold, Land, Level, Return, TakeOff
 
 
 class ModeTasks:
@@ -52,7 +52,7 @@ class ModeTasks:
             case Behaviour.LEVEL:
                 return Level()
             case Behaviour.HOLD:
-                return Hold()
+                return Brake() if state.rules.brakes_by_velocity else Hold()
             case Behaviour.GUIDED:
                 if state.rules.guided_forgets_setpoints:
                     self._stream.forget()

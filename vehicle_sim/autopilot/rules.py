@@ -12,6 +12,7 @@ from typing import Final
 
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
+from vehicle_sim.control_loops.trajectory import Law
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -138,7 +139,9 @@ class AutopilotRules:
 
     # Flown from outside: OFFBOARD, GUIDED, and a leader that is followed.
     setpoints_lift_off: bool  # a setpoint that leads up starts the flight from the ground
-    jerk: str | None  # the parameter that shapes its own flights [m/s^3]
+    jerk: str  # the parameter that shapes its own flights [m/s^3]
+    law: Law  # that they follow
+    brakes_by_velocity: bool  # a stop is a velocity of 0, not a place
     velocity_damping: str | None  # the parameter with the D-gain of its horizontal velocity loop
     lands_by_velocity: bool  # without a height that it must be at
     setpoints_fly_direct: bool  # to the position and velocity loops, without a trajectory
@@ -267,6 +270,8 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         # Flown from outside.
         setpoints_lift_off=True,
         jerk="MPC_JERK_AUTO",
+        law=Law.PX4,
+        brakes_by_velocity=False,
         velocity_damping="MPC_XY_VEL_D_ACC",
         lands_by_velocity=True,
         setpoints_fly_direct=True,
@@ -391,7 +396,9 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         disarmed_unflown="Disarming motors",
         # Flown from outside.
         setpoints_lift_off=False,
-        jerk=None,
+        jerk="PSC_JERK_XY",
+        law=Law.COPTER,
+        brakes_by_velocity=True,
         velocity_damping=None,
         lands_by_velocity=False,
         setpoints_fly_direct=False,

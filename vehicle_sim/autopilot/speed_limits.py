@@ -10,7 +10,7 @@ from vehicle_sim.autopilot.interface import SpeedType
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.rules import RULES
 from vehicle_sim.control_loops.believed import Believed
-from vehicle_sim.control_loops.trajectory import QUICK_M_S3, MotionLimits
+from vehicle_sim.control_loops.trajectory import MotionLimits
 from vehicle_sim.engine.step import Blocks
 
 
@@ -48,7 +48,6 @@ class SpeedLimits:
         """Made anew; `made_from` is the version of the parameters that it was made from."""
         self.made_from = self._parameters.version
         si = self._parameters.si
-        jerk = self._parameters.rules.jerk
         self._control.heading.max_rad_s = si(Quantity.TURN_RAD_S)
         limits = MotionLimits(
             si(Quantity.CRUISE_M_S),
@@ -57,7 +56,8 @@ class SpeedLimits:
             si(Quantity.ACCEL_M_S2),
             si(Quantity.ACCEL_VERTICAL_M_S2),
             si(Quantity.ACCEL_UP_M_S2),
-            QUICK_M_S3 if jerk is None else self._parameters.get(jerk),
+            self._parameters.get(self._parameters.rules.jerk),
+            self._parameters.rules.law,
         )
         write_gains(self._parameters, self._blocks.flight, self._blocks.est, self._believed)
         idle_thrust = RULES[self._parameters.personality].idle_thrust

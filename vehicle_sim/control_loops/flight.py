@@ -120,5 +120,12 @@ class Flight:
     land_share: float = 0.7  # of hover: with less in a descent it may stand on the ground
     tilt_max: float = 0.7  # tangent
     jerk_m_s3: float = 30.0
+    # Of the reference (see `trajectory.Law`), 1/s, horizontally and vertically: near the goal the
+    # speed is `approach_p` of the distance, the acceleration `sharpness` of the missing velocity.
+    approach_p: float = 1.5
+    approach_p_d: float = 1.5
+    sharpness: float = 5.0
+    sharpness_d: float = 5.0
+    brake_share: float = 0.6  # of the acceleration is planned for braking, the rest is for the lag
     brakes_by_jerk: bool = False  # plans a stop with that jerk, as PX4's own flights do
     lead_max_m: float = 4.0  # so far ahead of the vehicle the reference stands and waits

@@ -90,16 +90,9 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     int_d = most if int_d > most else int_d
     most = GRAVITY_M_S2 - high / (mass * load)
     int_d = most if int_d < most else int_d
-    # What drag will take in still air is fed forward (Faessler et al., IEEE RA-L 3(2), 2018): else
-    # the integrators learn it in a long flight, and give it back as an overshoot at its end.
-    n = 0.0 if f.direct else f.ref_vel_n
-    e = 0.0 if f.direct else f.ref_vel_e
-    hover = sqrt(0.25 * GRAVITY_M_S2 * mass / believed.thrust_max_n)
-    drag = 4.0 * hover * believed.rotor_drag_n_s_per_m
-    drag = (drag + believed.drag_n_per_m2_s2 * sqrt(n * n + e * e)) / mass
     as_asked = f.horizontal >= ACCELERATE
-    a_n = f.acc_n if as_asked else f.ref_acc_n + f.kp_vel_xy * err_n + f.int_n + drag * n
-    a_e = f.acc_e if as_asked else f.ref_acc_e + f.kp_vel_xy * err_e + f.int_e + drag * e
+    a_n = f.acc_n if as_asked else f.ref_acc_n + f.kp_vel_xy * err_n + f.int_n
+    a_e = f.acc_e if as_asked else f.ref_acc_e + f.kp_vel_xy * err_e + f.int_e
     a_d = f.ref_acc_d + f.kp_vel_z * err_d + int_d
     a_d = f.acc_d if f.vertical >= ACCELERATE else a_d
 

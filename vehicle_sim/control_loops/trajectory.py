@@ -10,6 +10,7 @@ at the velocity that the position loop asks for or that was asked for, within th
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 from math import sqrt
 from typing import Final
 
@@ -20,13 +21,18 @@ from vehicle_sim.numerics.vectors import Vec3
 
 QUICK_M_S3: Final = 30.0
 """The jerk of a vehicle that its autopilot does not limit: it is in the lag of its attitude."""
-_APPROACH_P = 1.5  # 1/s: near the goal the speed is proportional to the distance
-_SHARPNESS = 5.0  # 1/s: how fast the reference takes up a wanted velocity
 _LEAD_FREE = 0.175  # of the lead at which the reference waits: up to here it does not
 _FORGET_P = 1.0  # 1/s
 _UNWIND_SHARE = 0.7  # of the jerk takes the acceleration back as the velocity comes near
 _BRAKE_REACT_S = 0.6  # by memory: MissionBlock::calculate_breaking_stop, 0.6 of the jerk over it
-_BRAKE_SHARE = 0.6  # of the acceleration is planned for braking, the rest is for the lag
+
+
+class Law(Enum):
+    """How a reference comes up to a velocity and down to a goal."""
+
+    STEADY = "of this vehicle, for what no autopilot shapes"
+    PX4 = "with room to reverse the acceleration at the jerk (`speed_by_jerk`)"
+    COPTER = "acceleration = jerk / acceleration of what is missing of the velocity"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +46,7 @@ class MotionLimits:
     accel_vertical_m_s2: float  # downwards; upwards too where `accel_up_m_s2` is not given
     accel_up_m_s2: float | None = None
     jerk_m_s3: float = QUICK_M_S3
+    law: Law = Law.STEADY
 
     @property
     def lift_m_s2(self) -> float:
@@ -56,14 +63,14 @@ def slowed(v_ned: Vec3, limits: MotionLimits, top_m_s: float) -> Vec3:
 
 
 @kernel
-def approach_speed(distance_m: float, accel_m_s2: float) -> float:
+def approach_speed(distance_m: float, accel_m_s2: float, approach_p: float) -> float:
     """The speed at `distance_m` from a goal from which one can still stop there.
 
     sqrt(2 a d) far away, proportional to the distance near by, and smooth where they meet.
     """
-    near = accel_m_s2 / (_APPROACH_P * _APPROACH_P)
+    near = accel_m_s2 / (approach_p * approach_p)
     return (
-        _APPROACH_P * distance_m
+        approach_p * distance_m
         if distance_m <= near
         else sqrt(2.0 * accel_m_s2 * (distance_m - 0.5 * near))
     )
@@ -90,9 +97,9 @@ def stopping_point(f: Flight, est: Estimated, limits: MotionLimits) -> Vec3:
         lead = flat / (2.0 * limits.accel_m_s2) + _BRAKE_REACT_S
         lead_d = abs(vd) / (2.0 * brake) + _BRAKE_REACT_S
         return (f.ref_n + vn * lead, f.ref_e + ve * lead, f.ref_d + vd * lead_d)
-    lead = flat / (2.0 * _BRAKE_SHARE * limits.accel_m_s2) + 0.5 / _APPROACH_P
+    lead = flat / (2.0 * f.brake_share * limits.accel_m_s2) + 0.5 / f.approach_p
     brake = limits.lift_m_s2 if vd > 0.0 else limits.accel_vertical_m_s2
-    lead_d = abs(vd) / (2.0 * _BRAKE_SHARE * brake) + 0.5 / _APPROACH_P
+    lead_d = abs(vd) / (2.0 * f.brake_share * brake) + 0.5 / f.approach_p_d
     return (f.ref_n + vn * lead, f.ref_e + ve * lead, f.ref_d + vd * lead_d)
 
 
@@ -153,7 +160,7 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
         if direct
         else speed_by_jerk(flat, accel, jerk)
         if slow
-        else approach_speed(flat, _BRAKE_SHARE * accel)
+        else approach_speed(flat, f.brake_share * accel, f.approach_p)
     )
     speed = top if speed > top else speed
     rise = (
@@ -161,7 +168,9 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
         if direct
         else speed_by_jerk(drop, accel_d if dd > 0.0 else accel_up, jerk)
         if slow
-        else approach_speed(drop, _BRAKE_SHARE * (accel_up if dd > 0.0 else accel_d))
+        else approach_speed(
+            drop, f.brake_share * (accel_up if dd > 0.0 else accel_d), f.approach_p_d
+        )
     )
     cap = f.descend_m_s if dd > 0.0 else f.climb_m_s
     rise = cap if rise > cap else rise
@@ -193,17 +202,19 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
     vd = f.ref_vel_d
     turns = f.turn_rad_s != 0.0
     bend = f.turn_rad_s * f.turn_rad_s
-    an = _SHARPNESS * (want_n - vn) - bend * (f.goal_n - f.centre_n)
-    ae = _SHARPNESS * (want_e - ve) - bend * (f.goal_e - f.centre_e)
-    ad = _SHARPNESS * (want_d - vd)
+    sharp = f.sharpness
+    an = sharp * (want_n - vn) - bend * (f.goal_n - f.centre_n)
+    ae = sharp * (want_e - ve) - bend * (f.goal_e - f.centre_e)
+    ad = f.sharpness_d * (want_d - vd)
     # No more than can be taken back, at the jerk, by the time the velocity is there.
-    unwind = 2.0 * _UNWIND_SHARE / _SHARPNESS * jerk
+    unwind = 2.0 * _UNWIND_SHARE / sharp * jerk
     size = sqrt(an * an + ae * ae)
     most = sqrt(unwind * size) if size > unwind and not turns else size
     most = accel if most > accel else most
     scale = most / size if size > most else 1.0
     an = 0.0 if free_flat else an * scale
     ae = 0.0 if free_flat else ae * scale
+    unwind = 2.0 * _UNWIND_SHARE / f.sharpness_d * jerk
     ad = sqrt(unwind * ad) if ad > unwind else -sqrt(-unwind * ad) if -ad > unwind else ad
     ad = 0.0 if free_down else accel_d if ad > accel_d else -accel_up if ad < -accel_up else ad
     jn = an - f.ref_acc_n

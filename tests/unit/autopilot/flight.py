@@ -6,7 +6,6 @@ from collections.abc import Callable
 from copy import deepcopy
 from functools import cache
 from math import nan, sqrt
-from pathlib import Path
 from typing import Self
 
 from vehicle_sim.autopilot.autopilot import Autopilot
@@ -24,10 +23,8 @@ from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import Seat, VehicleSpec
 from vehicle_sim.numerics.vectors import Vec3
-from vehicle_sim.plant.airframe import load, parse, shipped
+from vehicle_sim.plant.airframe import load
 
-SIH = Path(__file__).with_name("sih.toml")
-"""The airframe with which the recorded PX4 flew its steps; not one that is shipped."""
 HOMES: dict[Personality, Geodetic] = {
     "px4": Geodetic(47.397742, 8.545594, 488.0),
     "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
@@ -45,8 +42,7 @@ class Flight:
         airframe: str = "s500",
     ) -> None:
         home = HOMES[personality]
-        frame = load(airframe) if airframe in shipped() else parse(SIH.read_text(), SIH.name)
-        seat = Seat(ScalarEngine([VehicleSpec(seed, 0, home.lat_deg)], frame), 0)
+        seat = Seat(ScalarEngine([VehicleSpec(seed, 0, home.lat_deg)], load(airframe)), 0)
         self.vehicle = Autopilot(personality, home, seed, seat=seat, boot=boot)
         self.personality: Personality = personality
         self.seen: list[VehicleEvent] = []

@@ -3,16 +3,19 @@
     python -m tests.unit.autopilot.step_responses
 
 prints the table: our airframe, for PX4 also one like that of SIH, the simulation in which it was
-recorded.  The real figures are those of the scenarios I1_step_response (the first of two
-runs) and I2_takeoff_and_goto_profiles: PX4 1.14.3 in SIH and ArduCopter 4.7-dev in SITL, each with
-an airframe of its own.
+recorded.  The real figures (real_steps.json) are those of PX4 1.14.3 in SIH and ArduCopter 4.7-dev
+in SITL, each with an airframe of its own: of the scenarios I1_step_response (the first of two runs)
+and I2_takeoff_and_goto_profiles; of bare position setpoints, four legs each, and of AUTO.LOITER and
+BRAKE from a steady velocity, up to four each, means by the simulators' truth.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, atan2, degrees, hypot, radians, remainder, tau
+from pathlib import Path
 from typing import Final
 
 from tests.unit.autopilot.flight import Flight
@@ -22,74 +25,12 @@ from vehicle_sim.numerics.vectors import Vec3
 
 UP_M: Final = 10.0
 NEAR_M: Final = 0.5
+LEGS_M: Final = (10, 20, 40, 58, 100)
+HOLDS_M_S: Final = (2, 4, 6, 8, 10)
 
-REAL: Final[dict[Personality, dict[str, float]]] = {
-    "px4": {
-        "10 m: first within 0.5 m, s": 3.31,
-        "10 m: stays within 0.5 m, s": 6.44,
-        "10 m: highest speed, m/s": 4.99,
-        "10 m: steepest tilt, deg": 48.0,
-        "10 m: highest acceleration, m/s2": 7.3,
-        "climb 5 m: within 0.5 m, s": 2.5,
-        "climb 5 m: highest speed, m/s": 2.68,
-        "climb 5 m: highest acceleration, m/s2": 7.6,
-        "descend 5 m: within 0.5 m, s": 4.29,
-        "descend 5 m: highest speed, m/s": 1.48,
-        "yaw 90 deg: to 85, s": 1.05,
-        "yaw 90 deg: fastest, deg/s": 122.3,
-        "yaw 90 deg: overshoot, deg": 9.6,
-        "velocity 3 m/s: to 2.7, s": 4.78,
-        "velocity 3 m/s: highest, m/s": 2.75,
-        "stream stops: to 0.3 m/s, s": 2.85,
-        "stream stops: way, m": 6.5,
-        "stream stops: then sinks, m/s": 0.76,
-        "land from 10 m: to disarm, s": 21.1,
-        "land: touch-down to disarm, s": 5.27,
-        "land: at 8 to 9 m, m/s": 0.97,
-        "land: at 4 to 5 m, m/s": 0.80,
-        "land: at 1 to 2 m, m/s": 0.61,
-        "take-off 10 m: first 0.2 m, s": 2.15,
-        "take-off 10 m: to 9 m, s": 12.33,
-        "take-off 10 m: ends at, m": 9.18,
-        "goto 40 m: highest speed, m/s": 4.48,
-        "goto 40 m: within 1 m, s": 13.33,
-        "return from 40 m: to disarm, s": 63.3,
-        "return: fastest climb, m/s": 2.5,
-        "return: fastest descent, m/s": 1.75,
-    },
-    "ardupilot": {
-        "10 m: first within 0.5 m, s": 3.62,
-        "10 m: stays within 0.5 m, s": 3.6,
-        "10 m: highest speed, m/s": 4.72,
-        "10 m: steepest tilt, deg": 21.9,
-        "10 m: highest acceleration, m/s2": 3.35,
-        "climb 5 m: within 0.5 m, s": 3.5,
-        "climb 5 m: highest speed, m/s": 2.2,
-        "climb 5 m: highest acceleration, m/s2": 1.14,
-        "descend 5 m: within 0.5 m, s": 3.95,
-        "descend 5 m: highest speed, m/s": 1.57,
-        "yaw 90 deg: to 85, s": 1.15,
-        "yaw 90 deg: fastest, deg/s": 139.6,
-        "yaw 90 deg: overshoot, deg": 7.3,
-        "velocity 3 m/s: to 2.7, s": 1.51,
-        "velocity 3 m/s: highest, m/s": 3.1,
-        "stream stops: to 0.3 m/s, s": 4.38,
-        "stream stops: way, m": 12.03,
-        "land from 10 m: to disarm, s": 22.7,
-        "land: touch-down to disarm, s": 2.15,
-        "land: at 8 to 9 m, m/s": 0.49,
-        "land: at 4 to 5 m, m/s": 0.50,
-        "land: at 1 to 2 m, m/s": 0.50,
-        "take-off 10 m: first 0.2 m, s": 3.95,
-        "take-off 10 m: to 9 m, s": 8.3,
-        "take-off 10 m: ends at, m": 9.97,
-        "goto 40 m: highest speed, m/s": 9.59,
-        "goto 40 m: within 1 m, s": 8.47,
-        "return from 40 m: to disarm, s": 49.2,
-        "return: fastest climb, m/s": 1.65,
-        "return: fastest descent, m/s": 1.57,
-    },
-}
+REAL: Final[dict[Personality, dict[str, float]]] = json.loads(
+    Path(__file__).with_name("real_steps.json").read_text()
+)
 
 OFTEN_S: Final = 0.02
 SETPOINT_EVERY: Final = 3  # of them, about 20 Hz
@@ -176,7 +117,12 @@ class Stepper:
 
 def step_responses(personality: Personality, airframe: str = "s500") -> dict[str, float]:
     """Every cell of `REAL`, flown by our vehicle."""
-    return {**_steps(personality, airframe), **_profiles(personality, airframe)}
+    return {
+        **_steps(personality, airframe),
+        **_profiles(personality, airframe),
+        **_legs(personality, airframe),
+        **_holds(personality, airframe),
+    }
 
 
 def _steps(personality: Personality, airframe: str) -> dict[str, float]:
@@ -266,6 +212,62 @@ def _profiles(personality: Personality, airframe: str) -> dict[str, float]:
     cells["return from 40 m: to disarm, s"] = go[-1].t_s
     cells["return: fastest climb, m/s"] = go.most(lambda s: s.climb_m_s)
     cells["return: fastest descent, m/s"] = go.most(lambda s: -s.climb_m_s)
+    return cells
+
+
+def _hovering(personality: Personality, airframe: str) -> tuple[Stepper, Vec3]:
+    """In the mode that takes setpoints."""
+    fly = Stepper(personality, airframe)
+    fly.take_off()
+    n, e, _ = fly.vehicle.estimate.pos_ned
+    fly.track(2.0, Setpoint(pos_ned=(n, e, -UP_M)))
+    fly.vehicle.set_mode_kind("guided")
+    fly.track(6.0, Setpoint(pos_ned=(n, e, -UP_M)))
+    return fly, (n, e, -UP_M)
+
+
+def _legs(personality: Personality, airframe: str) -> dict[str, float]:
+    """Bare position setpoints north and south."""
+    fly, (_, e, d) = _hovering(personality, airframe)
+    cells: dict[str, float] = {}
+    sign = 1.0
+    for length_m in LEGS_M:
+        from_n = fly.vehicle.truth.pos_ned[0]
+        goal_n = fly.vehicle.estimate.pos_ned[0] + sign * length_m
+        go = fly.track(14.0 + length_m / 5.0, Setpoint(pos_ned=(goal_n, e, d)))
+        ways = [sign * (s.truth.pos_ned[0] - from_n) for s in go]
+        speeds = [sign * s.truth.v_ned[0] for s in go]
+        name = f"leg {length_m} m"
+        cells[f"{name}: highest speed, m/s"] = max(speeds)
+        pairs = zip(speeds, speeds[25:], strict=False)
+        cells[f"{name}: hardest braking, m/s2"] = max(first - last for first, last in pairs) / 0.5
+        cells[f"{name}: overshoot, m"] = max(ways) - length_m
+        cells[f"{name}: to rest, s"] = next(
+            s.t_s
+            for s, way in zip(go, ways, strict=True)
+            if s.speed_m_s < 0.25 and way > length_m - 0.7
+        )
+        sign = -sign
+    return cells
+
+
+def _holds(personality: Personality, airframe: str) -> dict[str, float]:
+    """AUTO.LOITER and BRAKE from a steady velocity, north and south."""
+    fly, _ = _hovering(personality, airframe)
+    cells: dict[str, float] = {}
+    sign = 1.0
+    for speed_m_s in HOLDS_M_S:
+        n, e, _ = fly.vehicle.estimate.pos_ned
+        fly.track(1.2, Setpoint(pos_ned=(n, e, -UP_M)))
+        fly.vehicle.set_mode_kind("guided")
+        fly.track(6.0, Setpoint(pos_ned=(n, e, -UP_M)))
+        fly.track(speed_m_s + 5.0, Setpoint(v_ned=(sign * speed_m_s, 0.0, 0.0)))
+        first = fly.vehicle.truth
+        fly.vehicle.set_mode_kind("brake")
+        go = fly.track(9.0)
+        way_m = max(sign * (s.truth.pos_ned[0] - first.pos_ned[0]) for s in go)
+        cells[f"hold from {speed_m_s} m/s: way by speed, s"] = way_m / (sign * first.v_ned[0])
+        sign = -sign
     return cells
 
 

@@ -18,6 +18,7 @@ from vehicle_sim.plant.quad import advance
 GOLDEN = {
     "racer250": "2957251567d2040ae295e5f8bd82efad381c6443df14306cfdefdcbce1a24848",
     "s500": "d77498848f165525af89ddf326c69ae4e2233193a33474248f908134cf3d5c45",
+    "sih": "1ad62ba39e2d609008e90de69cbb0483dff51cf98834f553ba0c1a5ba9607fd4",
 }
 """SHA-256 over the states of the flight below.  A change of the physics changes it, on purpose;
 a different machine or Python must not."""

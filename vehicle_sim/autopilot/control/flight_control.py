@@ -34,12 +34,17 @@ from vehicle_sim.control_loops.flight import (
     TO,
     Flight,
 )
-from vehicle_sim.control_loops.trajectory import QUICK_M_S3, MotionLimits
+from vehicle_sim.control_loops.trajectory import QUICK_M_S3, Law, MotionLimits
 from vehicle_sim.numerics.vectors import Quat, Vec3
 
 LAND_S: Final[dict[Personality, float]] = {"px4": 1.0, "ardupilot": 0.6}
 """How long the land detector must feel the ground: LNDMC_TRIG_TIME, by memory; ArduCopter's 1 s
 begins earlier than `guidance.feel_ground` can tell."""
+_SHARPNESS: Final = 5.0  # 1/s: these three of `Flight`, where no autopilot's law says otherwise
+_APPROACH_P: Final = 1.5  # 1/s
+_BRAKE_SHARE: Final = 0.6
+_COPTER_BRAKE_SHARE: Final = 0.75
+"""With this its legs end as recorded: 0.2 to 0.8 m too far, braking by 2.6 to 2.9 m/s^2."""
 
 
 def heading_of(q_ned_from_frd: Quat) -> float:
@@ -192,8 +197,8 @@ class FlightControl:
                 f.straight = demand.straight
                 f.height_free = demand.height_free
                 self._limit(demand.limits)
-                if demand.v_ned != STILL:  # what moves the goal shapes its way
-                    f.jerk_m_s3 = QUICK_M_S3
+                if demand.v_ned != STILL:
+                    self._quicken()
             case FlyVelocity():
                 self._go(AT_VELOCITY, AT_VELOCITY, s.pos_ned, demand.v_ned)
                 self._limit(demand.limits)
@@ -204,7 +209,7 @@ class FlightControl:
             case FlyCircle():
                 self._circle(demand, going_on)
                 self._limit(demand.limits)
-                f.jerk_m_s3 = QUICK_M_S3
+                self._quicken()
             case FlyAcceleration():
                 f.horizontal = f.vertical = ACCELERATE
                 f.acc_n, f.acc_e, f.acc_d = demand.a_ned
@@ -261,7 +266,25 @@ class FlightControl:
         f.accel_vertical_m_s2 = limits.accel_vertical_m_s2
         f.accel_up_m_s2 = limits.lift_m_s2
         f.jerk_m_s3 = limits.jerk_m_s3
-        f.brakes_by_jerk = limits.jerk_m_s3 < QUICK_M_S3
+        f.brakes_by_jerk = limits.law is Law.PX4
+        if limits.law is Law.COPTER:
+            f.sharpness = limits.jerk_m_s3 / limits.accel_m_s2
+            f.sharpness_d = limits.jerk_m_s3 / limits.accel_vertical_m_s2
+            f.approach_p, f.approach_p_d = 0.5 * f.sharpness, 0.5 * f.sharpness_d
+            f.brake_share = _COPTER_BRAKE_SHARE
+        else:
+            self._steady()
+
+    def _quicken(self) -> None:
+        """What moves the goal shapes the way."""
+        self.flight.jerk_m_s3 = QUICK_M_S3
+        self._steady()
+
+    def _steady(self) -> None:
+        f = self.flight
+        f.sharpness = f.sharpness_d = _SHARPNESS
+        f.approach_p = f.approach_p_d = _APPROACH_P
+        f.brake_share = _BRAKE_SHARE
 
     def _fly_attitude(self, demand: FlyAttitude) -> None:
         f = self.flight

@@ -25,8 +25,6 @@ _GAINS: dict[Personality, dict[str, str]] = {
     "ardupilot": {
         "PSC_POSXY_P": "kp_pos_xy",
         "PSC_POSZ_P": "kp_pos_z",
-        "PSC_VELXY_P": "kp_vel_xy",
-        "PSC_VELXY_I": "ki_vel_xy",
         "PSC_VELZ_P": "kp_vel_z",
         # ArduCopter learns the hover thrust in its acceleration loop.
         "PSC_ACCZ_I": "ki_vel_z",
@@ -74,7 +72,10 @@ _BOUNDS: dict[Personality, dict[str, str]] = {
         "MPC_Z_VEL_I_ACC": "ki_vel_z",
         "MC_YAW_P": "kp_yaw",
     },
-    "ardupilot": {},
+    "ardupilot": {
+        "PSC_VELXY_P": "kp_vel_xy",
+        "PSC_VELXY_I": "ki_vel_xy",
+    },
 }
 """What a parameter says as it is; the designed bound where the autopilot has no such parameter."""
 _LEAN: dict[Personality, tuple[str, float]] = {

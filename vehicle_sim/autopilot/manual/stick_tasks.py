@@ -31,7 +31,7 @@ from vehicle_sim.autopilot.manual.stick_feel import Feel, feel_of, hover_of, thr
 from vehicle_sim.autopilot.manual.sticks import CENTRED, Radio, Sticks
 from vehicle_sim.autopilot.modes import StickLaw
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.control_loops.trajectory import QUICK_M_S3, MotionLimits
+from vehicle_sim.control_loops.trajectory import QUICK_M_S3, Law, MotionLimits
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.vectors import Vec3
 
@@ -127,6 +127,7 @@ class StickFlight:
         limits = replace(
             s.limits,
             jerk_m_s3=QUICK_M_S3,
+            law=Law.STEADY,
             speed_m_s=feel.speed_m_s,
             climb_m_s=feel.climb_m_s,
             descend_m_s=feel.descend_m_s,

@@ -168,7 +168,7 @@ class Guided:
                 self._braking = True
                 self._hold = s.stop_ned
                 turner.turn_by_rate(0.0)
-            return FlyTo(self._hold or s.stop_ned, s.limits)
+            return FlyVelocity(STILL, s.limits)
         self._braking = False
         if isinstance(setpoint, AttitudeSetpoint):
             return FlyAttitude(setpoint, self._thrust_is_climb, s.limits)

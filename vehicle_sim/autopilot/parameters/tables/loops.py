@@ -45,6 +45,7 @@ ARDUPILOT = (
     real("ATC_RAT_YAW_P",    0.3,  0.1,  2.5,   "gain of the yaw rate loop"),
     real("ATC_SLEW_YAW",     6000, 500,  18000, "turn rate of its own flights [cdeg/s]"),
     real("PSC_ACCZ_I",       1.0,  0.0,  3.0,   "integral gain of the climb loop"),
+    real("PSC_JERK_XY",      5.0,  1.0,  20.0,  "jerk of its own flights [m/s^3]"),
     real("PSC_POSXY_P",      1.0,  0.5,  2.0,   "gain of the horizontal position loop"),
     real("PSC_POSZ_P",       1.0,  0.5,  3.0,   "gain of the height loop"),
     real("PSC_VELXY_I",      1.0,  0.02, 1.0,   "integral gain of the horizontal velocity loop"),

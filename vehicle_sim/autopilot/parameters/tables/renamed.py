@@ -85,6 +85,7 @@ COPTER_4_7 = (
     Renamed("LOIT_SPEED",       "LOIT_SPEED_MS",    _CM),
     Renamed("PSC_ACCZ_I",       "PSC_D_ACC_I",      0.1),
     Renamed("PSC_ACCZ_P",       "PSC_D_ACC_P",      0.1),
+    Renamed("PSC_JERK_XY",      "PSC_JERK_NE"),
     Renamed("PSC_POSXY_P",      "PSC_NE_POS_P"),
     Renamed("PSC_POSZ_P",       "PSC_D_POS_P"),
     Renamed("PSC_VELXY_D",      "PSC_NE_VEL_D"),
