@@ -141,8 +141,11 @@ class Run:
         assert (permit.v_ned, permit.a_ned, permit.yaw_rate_rad_s) == (None, None, None)
         assert pos_ned is not None
         north_m, east_m, down_m = pos_ned
-        assert math.hypot(north_m, east_m) <= RADIUS_M
-        assert 0.0 <= -down_m <= CEILING_M
+        # From outside it leads back inside, and no farther out.
+        here_north_m, here_east_m, here_down_m = self.gate.pos_ned or pos_ned
+        beside_m = max(RADIUS_M, math.hypot(here_north_m, here_east_m))
+        assert math.hypot(north_m, east_m) <= beside_m + 1e-9
+        assert min(0.0, -here_down_m) <= -down_m <= max(CEILING_M, -here_down_m)
         if hold is not None and permit.reason.startswith("brake"):
             self.places.add(hold.pos_ned)
         if hold is not None and hold.evidence[0][0] == "ahead_m":
