@@ -217,7 +217,11 @@ class HostileRun:
         if asked == (None, None, None) or not all(math.isfinite(x) for v in asked for x in v or ()):
             self._fail(f"a setpoint that says nothing: {permit}")
         pos_ned = permit.pos_ned
-        if pos_ned is not None and self.fence_on and self.clearance(pos_ned) < -self._allowed():
+        if pos_ned is None or not self.fence_on:
+            return
+        # From outside it leads back inside, and no farther out.
+        least_m = min(-self._allowed(), self.clearance(self.gate.pos_ned or pos_ned) - 1e-6)
+        if self.clearance(pos_ned) < least_m:
             self._fail(f"a setpoint outside: {pos_ned}")
 
     def all_answered(self) -> None:

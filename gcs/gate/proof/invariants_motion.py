@@ -235,15 +235,23 @@ def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
     )
     if breach is None:
         return
+    again_ns = edge.after.hold_again_ns
     slowed = breach.by is StopBy.SETPOINT and breach.brake_pos_ned is not None
-    if CommandKind.HOLD not in edge.commands and not (
-        slowed and edge.after.hold_again_ns is not None
-    ):
+    later = slowed and again_ns is not None and again_ns <= edge.now_ns + _slowed_ns(edge, given)
+    if CommandKind.HOLD not in edge.commands and not later:
         yield f"a breach is predicted in {before.state.name} and not held"
     if edge.after.state is not State.HOLDING:
         yield f"a breach is predicted and {edge.after.state.name} goes on"
     if breach.brake_pos_ned is not None and not edge.setpoints and not _jumped(edge, given):
         yield f"a breach is predicted in {before.state.name} and not braked"
+
+
+def _slowed_ns(edge: Edge, given: PositionSeen) -> int:
+    """How long setpoints take to stop it, by the policy's figures."""
+    approach = edge.policy.approach_of(edge.before.autopilot)
+    north, east, down = given.v_ned
+    level_s = math.hypot(north, east) / approach.a_brake_h_m_s2
+    return round((approach.react_s + max(level_s, abs(down) / approach.a_brake_v_m_s2)) * SECOND_NS)
 
 
 def learns_nothing_from_the_past(edge: Edge) -> Iterator[str]:

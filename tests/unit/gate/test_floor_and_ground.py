@@ -45,10 +45,10 @@ class TestGoal:
         assert go(flying(), at(0, 0, 2), at(0, 0, -0.5)) is Code.LEG_LEAVES_FENCE
 
     def test_no_goal_is_flown_to_by_who_falls_through_the_floor(self) -> None:
-        """5 m/s down: 3.5 m of reaction and 25 / 6 m of braking, 7.67 m in all."""
+        """5 m/s down: 7 m of reaction, 25 / 19.6 m of braking: 8.28 m; 0.2 m is asked."""
         falling = (0.0, 0.0, 5.0)
-        assert go(flying(), at(0, 0, 3), at(0, 0, 7.8), falling) is Code.CANNOT_STOP
-        assert go(flying(), at(0, 0, 3), at(0, 0, 7.9), falling) is None
+        assert go(flying(), at(0, 0, 3), at(0, 0, 8.4), falling) is Code.CANNOT_STOP
+        assert go(flying(), at(0, 0, 3), at(0, 0, 8.5), falling) is None
 
 
 def test_the_circle_of_a_mission_is_above_the_floor() -> None:
@@ -61,7 +61,7 @@ def test_the_circle_of_a_mission_is_above_the_floor() -> None:
 
 
 class TestTheGroundEndsALanding:
-    """Falling at 6 m/s the vehicle would go 4.2 + 6 = 10.2 m; the ground is 4 m below it."""
+    """Falling at 6 m/s the vehicle would go 8.4 + 1.84 = 10.24 m; the ground is 4 m below it."""
 
     FALLING: Vec3 = (0.0, 0.0, 6.0)
 
@@ -86,7 +86,7 @@ class TestTheGroundEndsALanding:
 
 
 class TestBrake:
-    """10 m/s: 3 m of reaction and 10 m of braking."""
+    """10 m/s: 14 m of reaction and 14.9 m of braking."""
 
     DASH = at(10, 0, 0)
 

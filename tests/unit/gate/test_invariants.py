@@ -64,6 +64,7 @@ class Run:
     asked: set[int] = field(default_factory=set)
     places: set[Vec3] = field(default_factory=set)
     streamed: dict[StreamSeen, int] = field(default_factory=dict)
+    sent_ned: Vec3 | None = None
     last_id: int = 0
 
     def __post_init__(self) -> None:
@@ -140,23 +141,51 @@ class Run:
         assert (permit.v_ned, permit.a_ned, permit.yaw_rate_rad_s) == (None, None, None)
         assert pos_ned is not None
         north_m, east_m, down_m = pos_ned
-        assert math.hypot(north_m, east_m) <= RADIUS_M
-        assert 0.0 <= -down_m <= CEILING_M
-        if permit.reason.startswith("brake"):
-            self.places.add(pos_ned)
-        if hold is not None and pos_ned == hold.pos_ned and hold.evidence[0][0] == "ahead_m":
-            inside = math.hypot(north_m, east_m) <= RADIUS_M - MARGIN_M
-            assert inside or pos_ned in self.places
-            self.places.add(pos_ned)
-        assert pos_ned in self.places | set(self.goals.values())
+        # From outside it leads back inside, and no farther out.
+        here_north_m, here_east_m, here_down_m = self.gate.pos_ned or pos_ned
+        beside_m = max(RADIUS_M, math.hypot(here_north_m, here_east_m))
+        assert math.hypot(north_m, east_m) <= beside_m + 1e-9
+        assert min(0.0, -here_down_m) <= -down_m <= max(CEILING_M, -here_down_m)
+        if hold is not None and permit.reason.startswith("brake"):
+            self.places.add(hold.pos_ned)
+        if hold is not None and hold.evidence[0][0] == "ahead_m":
+            inside = math.hypot(*hold.pos_ned[:2]) <= RADIUS_M - MARGIN_M
+            assert inside or hold.pos_ned in self.places
+            self.places.add(hold.pos_ned)
+        assert any(self.leads_to(pos_ned, to) for to in self.places | set(self.goals.values()))
+        self.sent_ned = pos_ned
+
+    def leads_to(self, sent_ned: Vec3, to_ned: Vec3) -> bool:
+        """There, or straight on the way there from the last report; or sent before, where that is
+        too old."""
+        here_ned = self.gate.pos_ned
+        if sent_ned in (to_ned, self.sent_ned) or here_ned is None:
+            return True
+        parts = [
+            (x - a) / (b - a) if abs(b - a) > 1e-6 else None
+            for a, x, b in zip(here_ned, sent_ned, to_ned, strict=True)
+        ]
+        beside = all(
+            part is not None or abs(x - a) < 1e-6
+            for part, x, a in zip(parts, sent_ned, here_ned, strict=True)
+        )
+        level = [part for part in parts[:2] if part is not None]
+        straight = not level or max(level) - min(level) < 1e-4
+        return beside and straight and all(-1e-6 <= p <= 1.0 + 1e-6 for p in parts if p is not None)
 
     def as_it_came(self, permit: Permit) -> None:
         """A sample of a stream: one that came less than the dead-man's time ago."""
-        sent = (permit.pos_ned, permit.v_ned, permit.a_ned, permit.yaw_rad, permit.yaw_rate_rad_s)
+        sent = (permit.v_ned, permit.a_ned, permit.yaw_rad, permit.yaw_rate_rad_s)
         came = [
             at_ns
             for s, at_ns in self.streamed.items()
-            if (s.pos_ned, s.v_ned, s.a_ned, s.yaw_rad, s.yaw_rate_rad_s) == sent
+            if (s.v_ned, s.a_ned, s.yaw_rad, s.yaw_rate_rad_s) == sent
+            and (permit.pos_ned is None) == (s.pos_ned is None)
+            and (
+                permit.pos_ned is None
+                or s.pos_ned is None
+                or self.leads_to(permit.pos_ned, s.pos_ned)
+            )
         ]
         assert self.now_ns - max(came) < SECOND_NS // 2
 

@@ -81,6 +81,7 @@ class TestSlowPositions:
             script.pos_ned, script.v_ned = ned_from_enu((east, 0.0, UP)), (0.0, 8.0, 0.0)
             script.position()
         assert script.gate.state is State.HOLDING
+        script.wait(2.0)  # setpoints stop it in 0.3 s + 8 / 5 s
         assert CommandKind.HOLD in script.commands()
         assert all(place[0] < 150.0 for _, place in script.setpoints())
 
@@ -92,12 +93,14 @@ class TestSlowPositions:
         script.wait(1.2)
         assert script.gate.state is State.STALE
         script.forget()
-        script.pos_ned = ned_from_enu((120.0, 0.0, UP))
+        script.pos_ned = ned_from_enu((134.0, 0.0, UP))
         script.position()
-        assert script.commands() == [CommandKind.HOLD]
+        assert script.commands() == []
         assert len(list(script.setpoints())) == 1
         assert script.states() == [State.HOLDING]
         assert script.outcome(goto).code is Code.FENCE_BREACH
+        script.wait(2.75)  # setpoints stop it in 0.3 s + 12 / 5 s
+        assert set(script.commands()) == {CommandKind.HOLD}
 
 
 class TestLandedState:

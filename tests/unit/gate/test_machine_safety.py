@@ -124,7 +124,7 @@ class TestStale:
 
 class TestBreach:
     def dash(self, script: Script) -> PositionSeen:
-        """Ten metres from the fence, at ten metres a second towards it."""
+        """Ten metres from the fence, at twelve metres a second towards it."""
         sample = PositionSeen((140.0, 0.0, -UP), (12.0, 0.0, 0.0), script.now_ns // MS + 5_000)
         script.now_ns += 5 * SECOND
         script.feed(HeartbeatSeen(True, script.mode, script.mode.value))
@@ -136,17 +136,31 @@ class TestBreach:
     def test_the_brake_leaves_in_the_instant_of_the_sample_and_then_hold(
         self, state: State
     ) -> None:
-        script = in_state(state)
+        """Where it follows setpoints those stop it sooner, in 0.3 s + 12 / 5 s; then it is held."""
+        script, by_setpoints = (
+            in_state(state),
+            state
+            in (
+                State.HOVERING,
+                State.MOVING,
+                State.TAKING_PICTURE,
+            ),
+        )
         sample = self.dash(script)
         script.forget()
         script.feed(sample)
         (brake,) = script.all(SendSetpoint)
         assert brake.permit.pos_ned is not None
         assert brake.permit.reason.startswith("brake")
-        assert script.commands() == [CommandKind.HOLD]
+        assert script.commands() == ([] if by_setpoints else [CommandKind.HOLD])
         assert script.gate.state is State.HOLDING
         east, north, _ = enu_from_ned(brake.permit.pos_ned)
         assert (east * east + north * north) ** 0.5 < 150.0
+        script.pos_ned = (148.0, 0.0, -UP)
+        script.wait(2.65)
+        assert (CommandKind.HOLD in script.commands()) is not by_setpoints
+        script.wait(0.1)
+        assert CommandKind.HOLD in script.commands()
 
     def test_the_goal_ends_with_the_breach_named(self) -> None:
         script = in_state(State.HOVERING)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from gcs.gate.airspace.pace import Paced
 from gcs.gate.effects import SendSetpoint
 from gcs.gate.inputs import Tick
 from gcs.gate.machine.memory import Goal
@@ -14,8 +15,9 @@ from tests.unit.gate.reactions import STATES, flight, remember
 from tests.unit.gate.script import SECOND, Script, policy
 from tests.unit.gate.situations import UP
 
-HELD = Goal((1.0, 2.0, -UP), None, ())
-FLOWN_TO = Goal((7.0, 8.0, -UP), None, ())
+# Within half a metre the goal itself is sent.
+HELD = Goal((0.1, 0.2, -UP), None, ())
+FLOWN_TO = Goal((0.3, -0.3, -UP), None, ())
 
 STREAMED = {
     State.HOVERING: HELD,
@@ -55,11 +57,17 @@ def test_a_tick_sends_the_goal_of_the_state_or_nothing(state: State) -> None:
 def test_with_a_position_too_old_it_goes_on_as_before_for_the_grace_only(
     before: State, in_grace: bool
 ) -> None:
-    script, _ = flight(State.STALE)
-    until_ns = script.now_ns + SECOND if in_grace else None
-    remember(script, hold=HELD, goal=FLOWN_TO, back_to=before, grace_until_ns=until_ns)
-    expected = STREAMED.get(before) if in_grace else None
-    assert sent(script) == ([] if expected is None else [expected.pos_ned])
+    """With what was sent last on the way to its goal; on another way it stays where it was."""
+    goal = STREAMED.get(before)
+    for on_this_way in (True, False):
+        script, _ = flight(State.STALE)
+        until_ns = script.now_ns + SECOND if in_grace else None
+        remember(script, hold=HELD, goal=FLOWN_TO, back_to=before, grace_until_ns=until_ns)
+        to_ned = goal.pos_ned if goal is not None and on_this_way else (9.0, 9.0, -UP)
+        last_ned = (0.05, 0.06, -UP)
+        remember(script, paced=Paced(to_ned, last_ned, (0.1, 0.1, 0.0)))
+        expected = last_ned if on_this_way else script.pos_ned
+        assert sent(script) == ([] if goal is None or not in_grace else [expected])
 
 
 def test_while_a_goal_is_judged_the_hold_goal_is_the_one_that_is_sent() -> None:

@@ -36,6 +36,13 @@ from tests.unit.gate.script import MS, SECOND, Script, policy
 from tests.unit.gate.situations import UP
 
 
+def braked(state: State) -> Reaction:
+    """One that follows setpoints is stopped by them, and told its hold mode when it is slow."""
+    by_setpoints = state in (State.MOVING, State.TAKING_PICTURE)
+    after, control, held = HELD
+    return Reaction(after, control, [] if by_setpoints else held, "aborted FENCE_BREACH")
+
+
 class TestJump:
     @pytest.mark.parametrize("state", [*VERIFIED, State.RETURNING])
     def test_it_holds_and_the_place_is_verified_anew(self, state: State) -> None:
@@ -170,9 +177,11 @@ class TestBreach:
         found = Reaction(
             state_of(script), script.gate.control, script.commands(), ended(script, request_id)
         )
-        assert found == Reaction(*HELD, "aborted FENCE_BREACH")
+        assert found == braked(state)
         (brake,) = script.all(SendSetpoint)
-        assert script.gate.hold_goal_ned == brake.permit.pos_ned
+        assert brake.permit.pos_ned is not None
+        assert script.gate.hold_goal_ned is not None
+        assert 140.0 <= brake.permit.pos_ned[0] <= script.gate.hold_goal_ned[0] < 148.0
 
     @pytest.mark.parametrize("state", [State.LANDING, State.HOLDING, State.EXTERNAL])
     def test_what_lands_or_is_held_or_is_not_ours_is_left_alone(self, state: State) -> None:
@@ -193,9 +202,7 @@ class TestBreach:
         remember(script, pos_ned=ned_from_enu((0.0, 139.0, UP)))
         script.now_ns = sample_ns
         given = PositionSeen((140.0, 0.0, -UP), (12.0, 0.0, 0.0), script.now_ns // MS)
-        assert reaction(script, request_id, lambda s: s.feed(given)) == Reaction(
-            *HELD, "aborted FENCE_BREACH"
-        )
+        assert reaction(script, request_id, lambda s: s.feed(given)) == braked(state)
         assert len(script.all(SendSetpoint)) == 1
 
     def test_what_is_held_already_is_not_braked_when_its_sample_comes_late(self) -> None:
