@@ -20,6 +20,8 @@ from tests.real.trials import KINDS as TRIALS
 from tests.real.vehicle import Vehicle
 
 Result = dict[str, Any]
+LEAST_SHARE = 0.85
+"""Of real time: a simulation that runs slower is starved, and what it did says nothing."""
 
 
 def fly(flight: Flight, row: Row) -> Result:
@@ -38,10 +40,16 @@ def fly(flight: Flight, row: Row) -> Result:
     except Exception as error:  # noqa: BLE001 - a row that breaks must not end the run
         told, wrong = "broke", f"{type(error).__name__}: {error}"
         flight.leave()
-    first, off = flight.marks or (len(observer.truth.samples), len(observer.off_m))
+    marks = flight.marks or (len(observer.truth.samples), len(observer.off_m), time.monotonic())
+    first, off, began = marks
     flown = observer.truth.samples[first:]
     clearances = [row.clearance_m(observer.from_home(s.position_enu)) for s in flown]
     nearest = min(clearances, default=None)
+    share = 1.0
+    if len(flown) > 1:
+        share = (flown[-1].at_s - flown[0].at_s) / (time.monotonic() - began)
+    if share < LEAST_SHARE:
+        wrong = f"starved: the vehicle's clock ran at {share:.2f} of real time. {wrong}"
     if nearest is not None and nearest < 0.0:
         wrong = f"OUTSIDE by {-nearest:.2f} m. {wrong}"
     station = flight.current
@@ -55,6 +63,7 @@ def fly(flight: Flight, row: Row) -> Result:
         "seconds": round(flown[-1].at_s - flown[0].at_s, 1) if flown else None,
         "estimate_off_m": round(max(observer.off_m[off:], default=0.0), 2),
         "row_s": round(time.monotonic() - started, 1),
+        "clock_share": round(share, 2),
         "load": round(os.getloadavg()[0], 1),
         "states": [] if station is None else station.said[said:],
     }

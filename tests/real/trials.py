@@ -155,8 +155,7 @@ def landing(flight: Flight, row: Row) -> Told:
         return told, "" if told == "complete" and not flight.observer.armed else f"land: {told}"
     pilot = flight.library(row)
     if row.word == "other":
-        flight.observer.command(21)
-        told = "by another"
+        told = "by another" if flight.land_past_the_gate() else "does not land"
     elif row.word == "mission":
         told = fly_mission(flight, row)
     else:
