@@ -321,7 +321,7 @@ def test_the_heartbeat_confirms_control_and_a_goal_before_that_waits_for_it() ->
     assert script.commands() == [CommandKind.GUIDED]
     script.answer(CommandKind.GUIDED, 0)
     assert not script.ended(control)
-    assert script.gate.state is State.HOVERING
+    assert script.gate.state.name == "HOVERING"
     script.heartbeat(FlightMode.GUIDED)
     assert script.outcome(control).kind is OutcomeKind.COMPLETE
     script.tick()

@@ -20,6 +20,7 @@ from vehicle_sim.autopilot.tasks.tasks import distance
 from vehicle_sim.control_loops.trajectory import MotionLimits, approach_speed
 from vehicle_sim.numerics.vectors import Vec3
 
+_APPROACH_P = 1.5  # 1/s: near its end the speed is proportional to the way left
 _BRAKE_SHARE = 0.5  # of the acceleration, along the curve; as much is left to bend the path
 _SLOWEST_M_S = 0.3
 _BEHIND_M = 2.0  # the goal slows down from here on, and stands still at twice as much
@@ -179,7 +180,7 @@ class Spline:
         brake = _BRAKE_SHARE * s.limits.accel_m_s2
         top = min(top, sqrt(self._caps[ahead] * self._caps[ahead] + 2.0 * brake * way_m))
         if self.stops:
-            top = min(top, approach_speed(self._curve.length_from(self._u), brake))
+            top = min(top, approach_speed(self._curve.length_from(self._u), brake, _APPROACH_P))
         return top
 
     def _plan(self, limits: MotionLimits) -> list[float]:
