@@ -44,11 +44,13 @@ class Flight:
         self._library: tuple[Path, Library] | None = None
         # Where the row that is judged begins: samples of truth, of the estimate's error, seconds.
         self.marks: tuple[int, int, float] | None = None
-        if not self.observer.start(START_S):
+        try:
+            if not self.observer.start(START_S):
+                told = folder / "vehicle" / "output.txt"
+                raise NotReadyError(f"{kind.name} tells no truth: see {told}")
+        except BaseException:
             self.close()
-            raise NotReadyError(
-                f"{kind.name} tells no truth: see {folder / 'vehicle' / 'output.txt'}"
-            )
+            raise
 
     def close(self) -> None:
         self.relay.trouble()
