@@ -103,7 +103,9 @@ def test_L05_a_second_request_while_moving_is_busy_and_never_flown(
     assert "(4.00 E, 0.00 N, 1.00 U)" in refused.sentence
     assert flight.done(first) == "complete"
     flight.run(5.0)
-    assert {setpoint.pos_ned for setpoint in flight.setpoints(since_ns)} == {(0.0, 4.0, -1.0)}
+    flown = {setpoint.pos_ned for setpoint in flight.setpoints(since_ns)}
+    assert (0.0, 4.0, -1.0) in flown
+    assert all(abs(north) < 0.5 and 0.0 < east < 4.5 for north, east, _ in flown)
     # By what the vehicle knows: its GPS wanders, by chance more than half a metre.
     north_m, east_m, _ = flight.vehicle.estimate.pos_ned
     assert (east_m, north_m) == pytest.approx((4.0, 0.0), abs=0.5)

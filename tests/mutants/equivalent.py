@@ -12,12 +12,6 @@ from typing import Final
 from tests.unit.gate import unreached as gate_table
 
 _AIRSPACE: Final[Mapping[str, tuple[str, ...]]] = {
-    "the start of a point's measure is not read": (
-        (
-            "gcs/gate/airspace/judge.py FenceJudge._point_measures: m.start_m - wide_m -> "
-            "m.start_m + wide_m"
-        ),
-    ),
     "sin c is zero only where north and east are, which the scale multiplies": (
         (
             "gcs/gate/airspace/projection.py _azimuthal_forward: math.atan2(sin_c, up) / "
@@ -67,10 +61,6 @@ _AIRSPACE: Final[Mapping[str, tuple[str, ...]]] = {
             "gcs/gate/geometry.py polygon_fault: min(point_segment_distance(c, a, b), "
             "point_segment_distance(a, b, c)) <= TOLERANCE_M -> min(point_segment_distance(c, "
             "a, b), point_segment_distance(a, b, c)) < TOLERANCE_M"
-        ),
-        (
-            "gcs/gate/geometry.py polygon_fault: segment_distance(a, b, *edges[j]) <= "
-            "TOLERANCE_M -> segment_distance(a, b, *edges[j]) < TOLERANCE_M"
         ),
     ),
     "crossings of the ray to the west: as odd or even as those to the east": (
@@ -123,8 +113,8 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
     ),
     "an unknown autopilot arms in every mode, so no mode is commanded first": (
         (
-            "gcs/gate/machine/commanding.py arm: (frozenset(FlightMode), CommandKind.HOLD) -> "
-            "(frozenset(FlightMode), CommandKind.GUIDED)"
+            "gcs/gate/machine/commanding.py _arm_or_its_mode: (frozenset(FlightMode), "
+            "CommandKind.HOLD) -> (frozenset(FlightMode), CommandKind.GUIDED)"
         ),
     ),
     "a stop is predicted with control, and there is none in GROUNDED": (
@@ -165,24 +155,24 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
         "gcs/gate/machine/guards.py _guards_of_memory: with None -> without",
     ),
     "it is read in FLYING_MISSION only, and the start of a mission sets it": (
-        "gcs/gate/machine/memory.py Memory: False -> True #5",
-    ),
-    "every picture sets it before it is read": (
         "gcs/gate/machine/memory.py Memory: False -> True #6",
     ),
+    "every picture sets it before it is read": (
+        "gcs/gate/machine/memory.py Memory: False -> True #7",
+    ),
     "every heartbeat sets it, and a mode that changes comes with one": (
-        "gcs/gate/machine/memory.py Memory: False -> True #4",
+        "gcs/gate/machine/memory.py Memory: False -> True #5",
     ),
     "whatever gives us control is a request, which sets it": (
-        "gcs/gate/machine/memory.py Memory: False -> True #8",
+        "gcs/gate/machine/memory.py Memory: False -> True #9",
     ),
     "it is read while a mode is awaited, and set with that mode": (
-        "gcs/gate/machine/memory.py Memory: 0 -> 1 #3",
+        "gcs/gate/machine/memory.py Memory: 0 -> 1 #7",
     ),
     "it is read during a take-off, which sets it": (
-        "gcs/gate/machine/memory.py Memory: 0.0 -> 1.0 #2",
-        "gcs/gate/machine/memory.py Memory: 0.0 -> 1.0 #3",
-        "gcs/gate/machine/memory.py Memory: 0.0 -> 1.0 #4",
+        "gcs/gate/machine/memory.py Memory: (0.0, 0.0, 0.0) -> (1.0, 0.0, 0.0)",
+        "gcs/gate/machine/memory.py Memory: (0.0, 0.0, 0.0) -> (0.0, 1.0, 0.0)",
+        "gcs/gate/machine/memory.py Memory: (0.0, 0.0, 0.0) -> (0.0, 0.0, 1.0)",
     ),
     "exactly at the height `at_height` holds, and its branches come first": (
         (
