@@ -14,7 +14,7 @@ from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.states import State
 from tests.loopback.flight import Flight
 
-VEHICLES = pytest.mark.parametrize("kind", ["px4", "px4 offboard=real", "ardupilot"])
+VEHICLES = pytest.mark.parametrize("kind", ["px4", "ardupilot"])
 RESTS_WITHIN_S = 12.0
 TIGHT = 2.5
 """A prediction this many times as long as what is flown is too long to be of use."""
@@ -22,9 +22,7 @@ TIGHT = 2.5
 
 def flight_of(kind: str, policy: str = "") -> Flight:
     parsed = parse_policy(policy, "my.toml")
-    if kind == "ardupilot":
-        return Flight("ardupilot", policy=parsed)
-    return Flight("px4", policy=parsed, offboard="real" if "real" in kind else "smooth")
+    return Flight("ardupilot" if kind == "ardupilot" else "px4", policy=parsed)
 
 
 def velocity_enu(flight: Flight) -> tuple[float, float, float]:
@@ -46,8 +44,7 @@ def rest(flight: Flight) -> None:
 @pytest.mark.parametrize(
     ("kind", "faster_than_m_s"),
     [
-        *(("px4", speed) for speed in (1.5, 3.0, 4.5)),  # its cruise speed is 5 m/s
-        *(("px4 offboard=real", speed) for speed in (1.5, 3.0, 4.5, 7.0, 9.5)),
+        *(("px4", speed) for speed in (1.5, 3.0, 4.5, 7.0, 9.5)),
         *(("ardupilot", speed) for speed in (1.5, 3.0, 4.5, 7.0, 9.5)),
     ],
 )
@@ -148,7 +145,7 @@ def test_a_goal_at_the_margin_is_flown_to_from_afar_and_not_braked_for(kind: str
 
 def test_a_step_of_offboard_as_recorded_is_not_braked_for() -> None:
     """10 m, the longest that was recorded, to 3 m from the wall."""
-    flight = flight_of("px4 offboard=real", HALL.format(north_m=13.0)).hovering(3.0)
+    flight = flight_of("px4", HALL.format(north_m=13.0)).hovering(3.0)
     assert flight.done(flight.goto(0.0, 10.0, 3.0)) == "complete"
     flight.run(5.0)
     assert flight.is_in(State.HOVERING)
