@@ -15,7 +15,6 @@ from gcs.operator.request_words import SendRequests
 STEP_WAIT_S: Final = 40.0
 COMPLETE: Final = "complete"
 ABORTED: Final = "aborted OPERATOR"
-BRAKED: Final = "aborted FENCE_BREACH"
 BUSY: Final = "refused BUSY"
 OUTSIDE: Final = "refused OUTSIDE_FENCE"
 IN_THE_WAY: Final = "refused LEG_LEAVES_FENCE"

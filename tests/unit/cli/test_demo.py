@@ -21,8 +21,7 @@ def yard() -> FakeConnection:
     mast = ("LEG_LEAVES_FENCE", "the leg goes inside the mast")
     outside = ("OUTSIDE_FENCE", "34.2 m outside")
     refusals = {(12.0, 16.0, 5.0): mast, (60.0, 8.0, 5.0): outside}
-    brakes = {(23.5, 0.0, 4.0): "it would come to rest 0.9 m from the fence"}
-    return FakeConnection(FakeStation(refusals=refusals, brakes=brakes))
+    return FakeConnection(FakeStation(refusals=refusals))
 
 
 def fly(connection: FakeConnection) -> tuple[int, str]:
@@ -39,7 +38,6 @@ def test_the_script_comes_out_as_written_and_is_told_on_a_pipe() -> None:
     assert "\x1b" not in told
     assert "goto 60 8 5: refused OUTSIDE_FENCE: 34.2 m outside" in told
     assert "goto 9 18 5: aborted OPERATOR" in told
-    assert "goto 23.5 0 4: aborted FENCE_BREACH" in told
     assert "✗" not in told
     assert "logs/x.mcap" in told
     assert connection.station.state == "GROUNDED"
@@ -54,7 +52,6 @@ def test_it_shows_all_that_it_must() -> None:
         "refused LEG_LEAVES_FENCE",
         "refused BUSY",
         "aborted OPERATOR",
-        "aborted FENCE_BREACH",
     }
     lines = " ".join(step.line for step in demo_script.SCRIPT)
     for word in ("arm", "takeoff", "control", "photo", "abort", "resume", "mission", "land"):

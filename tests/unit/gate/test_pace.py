@@ -56,12 +56,13 @@ class TestInOpenAir:
             # and so near that it flies to the goal itself: 0.95 x 1.5 m/s
             ("px4", 2.0, 1.5, 1.425, 0.89474),
             ("px4", 0.0, 1.5, 1.425, 1.5),
-            # gain: 3 m/s, and 3^2 / 2 2.5 + 2.5 / 2 m
-            ("ardupilot", 0.0, 100.0, 3.0, 3.05),
-            # most: 10 m/s, and 10^2 / 2 2.5 + 1.25 m
-            ("ardupilot", 8.0, 100.0, 10.0, 21.25),
-            # the end: sqrt(2 2 (5 - 2 / 2)) = 4 m/s, and 4 - (5 - 4) = 3 m/s
-            ("ardupilot", 5.0, 5.0, 4.0, 3.05),
+            # gain: 5 m/s, and 5^2 / 2 2.5 + 2.5 / 2 m
+            ("ardupilot", 0.0, 100.0, 5.0, 6.25),
+            # most: 11 m/s, and 11^2 / 2 2.5 + 1.25 m
+            ("ardupilot", 8.0, 100.0, 11.0, 25.45),
+            # the end: sqrt(2 2.5 (5 - 2.5 / 2)) = 4.33013 m/s, and 4.33013 - (5 - 4.33013) m/s,
+            # of which it is asked 3.66025^2 / 2 2.5 + 1.25 m ahead
+            ("ardupilot", 5.0, 5.0, 4.33013, 3.92949),
         ],
     )
     def test_level(

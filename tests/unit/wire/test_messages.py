@@ -134,8 +134,9 @@ def test_what_pymavlink_writes_we_read(
 
 
 def payload_of(definition: MessageDef) -> bytes:
-    """The full length without a zero: text would end there, and what is behind it is not kept."""
-    return bytes(17 * i % 0x7F + 1 for i in range(definition.max_len))
+    """The full length of printable letters: text would end at a zero, and is shown without what a
+    terminal obeys."""
+    return bytes(17 * i % 0x5F + 0x20 for i in range(definition.max_len))
 
 
 @each("cls", CLASSES.values(), said=lambda cls: cls.__name__)
