@@ -54,8 +54,6 @@ class FakeStation:
     stream_told: str = ""
     refusals: dict[ipc.Vec3, tuple[str, str]] = field(default_factory=dict)
     """Goals that are refused, with code and sentence."""
-    brakes: dict[ipc.Vec3, str] = field(default_factory=dict)
-    """Goals on whose way it is stopped, with the sentence."""
 
     def hello(self) -> list[ipc.Event]:
         fence = ipc.FenceShape(
@@ -218,8 +216,6 @@ class FakeStation:
         if self.left:
             self.target = self.left.pop(0)
             return []
-        if self.target in self.brakes:
-            return [*self._to("HOLDING", "breach"), *self._end("aborted", "FENCE_BREACH")]
         self.target = None
         landed = self.state == "LANDING"
         self.armed = self.armed and not landed
