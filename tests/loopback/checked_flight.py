@@ -130,6 +130,7 @@ class CheckedFlight(Flight):
         self.goals = set()
         self.abandoned = set()
         self.setpoint_count = 0
+        self._sent_ned: Vec3 | None = None
         super().__init__(*given, **named)
 
     def say(self, word: str, **named: Any) -> int:
@@ -188,12 +189,33 @@ class CheckedFlight(Flight):
             pymavlink_decoder.POSITION_ONLY,
             pymavlink_decoder.POSITION_AND_YAW,
         )
-        held = pos_ned in self.witness.stops
-        goes_to = self.goals | self.witness.tops
-        assert held or pos_ned in goes_to, f"nobody verified {pos_ned}"
-        assert held or pos_ned not in self.abandoned, f"{pos_ned} was abandoned, and is flown"
-        if self.witness.cleared[pos_ned]:
-            assert self.inside(pos_ned, held), f"{pos_ned} is outside"
+        held = [to_ned for to_ned in self.witness.stops if self._leads_to(pos_ned, to_ned)]
+        goals = (self.goals | self.witness.tops) - self.abandoned
+        goes_to = [to_ned for to_ned in goals if self._leads_to(pos_ned, to_ned)]
+        assert held or goes_to, f"nobody verified {pos_ned}, or it was abandoned"
+        self._sent_ned = pos_ned
+        inside = (self.inside(to_ned, to_ned in held) for to_ned in (*held, *goes_to))
+        unfenced = (not self.witness.cleared[to_ned] for to_ned in (*held, *goes_to))
+        assert any(inside) or any(unfenced), f"{pos_ned} leads outside"
+
+    def _leads_to(self, sent_ned: Vec3, to_ned: Vec3) -> bool:
+        """It is that place, or straight between it and where the vehicle was reported, level and
+        up or down apart; or what was sent last, where the report is old."""
+        seen = self.session.telemetry
+        if sent_ned == to_ned:
+            return True
+        if seen is None or seen.pos_ned is None:
+            return False
+        if sent_ned == self._sent_ned:
+            return True
+        north, east, down = (
+            (min(here, there) - ROUNDING_M <= sent <= max(here, there) + ROUNDING_M)
+            for here, sent, there in zip(seen.pos_ned, sent_ned, to_ned, strict=True)
+        )
+        way_n, way_e = to_ned[0] - seen.pos_ned[0], to_ned[1] - seen.pos_ned[1]
+        n, e = sent_ned[0] - seen.pos_ned[0], sent_ned[1] - seen.pos_ned[1]
+        beside_m = abs(way_n * e - way_e * n) / max(math.hypot(way_n, way_e), ROUNDING_M)
+        return north and east and down and beside_m <= ROUNDING_M
 
     def inside(self, pos_ned: Vec3, held: bool) -> bool:
         """Inside the fence as this file understands it: the lab's cage, or 150 m of home.

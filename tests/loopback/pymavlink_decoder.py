@@ -14,6 +14,7 @@ from pymavlink.dialects.v20 import all as dialect
 
 Vec3 = tuple[float, float, float]
 
+MAGIC = b"\xfd\xfe"
 LOCAL_NED = 1
 POSITION_ONLY = 3576
 POSITION_AND_YAW = 2552
@@ -41,8 +42,12 @@ def _decoder() -> Any:  # pymavlink has no types
 
 
 def read(data: bytes) -> Any:
-    """The one message of a datagram; raises where pymavlink finds anything wrong with it."""
-    return _decoder().decode(bytearray(data))
+    """The one message of a datagram; raises where pymavlink finds anything wrong with it.
+
+    Between frames a receiver skips what is no magic byte (see `gcs/wire/hidden_frames.py`).
+    """
+    first = next((at for at, byte in enumerate(data) if byte in MAGIC), 0)
+    return _decoder().decode(bytearray(data[first:]))
 
 
 def setpoint_of(message: Any, time_ns: int) -> SeenSetpoint | None:

@@ -225,10 +225,14 @@ class HostileRun:
             self._fail(f"a setpoint outside: {pos_ned}")
 
     def all_answered(self) -> None:
-        """After a tick no verdict is owed, and one ending at most."""
+        """After a tick no verdict is owed but on a goal that waits for control; one ending at
+        most."""
         memory = self.gate.memory
-        if self._asked != set(self._rulings):
-            self._fail(f"no verdict on {self._asked - set(self._rulings)}")
+        waits = set() if memory.pending is None else {memory.pending.request_id}
+        if waits and memory.control is not Control.TAKING:
+            self._fail(f"no verdict on {waits} at the tick")
+        if self._asked - waits != set(self._rulings):
+            self._fail(f"no verdict on {self._asked - waits - set(self._rulings)}")
         accepted = {n for n, ruling in self._rulings.items() if ruling is Ruling.ACCEPTED}
         under_way = set() if memory.task is None else {memory.task.requested.request_id}
         if accepted - self._ended != under_way:
