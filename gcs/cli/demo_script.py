@@ -106,7 +106,6 @@ SCRIPT: Final[tuple[Step, ...]] = (
     Step(
         "goto 23.5 0 4",
         say="Towards the fence: at each moment no faster than a stop still fits.",
-        pause_s=LOOK_S,
     ),
     Step("land", say="Down again."),
     Step("disarm"),

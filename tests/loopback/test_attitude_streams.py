@@ -34,6 +34,8 @@ tilt_deg = {TILT_DEG}
 """
 FENCE = box_fence(HALF_M, CEILING_M)
 POLICY = parse_policy(ATTITUDES + FENCE, "attitudes.toml")
+SHORT = parse_policy(f"{ATTITUDES}deadman_s = 0.2\n{FENCE}", "short.toml")
+"""A sample counts for less time, so that it needs less room above and below."""
 HOVER = {"px4": 0.43, "ardupilot": 0.5}
 """The thrust that keeps the height: vehicle-sim's MPC_THR_HOVER; the middle of a climb rate."""
 POSITION_ONLY = 3576
@@ -159,7 +161,7 @@ def test_a_yaw_rate_beside_it_turns_the_nose(personality: Personality) -> None:
 def test_at_the_fence_it_is_held_inside_and_flown_back(
     personality: Personality, roll_deg: float, pitch_deg: float, more_thrust: float
 ) -> None:
-    flight, _, stream = flying(personality)
+    flight, _, stream = flying(personality, SHORT, up_m=27.0 - 7.0 * more_thrust)
     blow(flight, 3.0, 2.0)
     full = 0.03 if personality == "px4" else 0.5
     """As a share of full thrust; as a climb rate."""
@@ -240,9 +242,9 @@ def test_a_hover_thrust_that_is_told_a_little_wrong(share: float) -> None:
     """It rises or sinks by what the parameter is wrong, within what the policy has it, and the gate
     holds it inside."""
     told = 0.43 * share
-    flight, _, stream = flying("px4", params={"MPC_THR_HOVER": told})
+    flight, _, stream = flying("px4", SHORT, up_m=27.0, params={"MPC_THR_HOVER": told})
     stream.fly_until_refused(0.0, 0.0, told)
     stream.fly(2.0, 0.0, 0.0, told)
     assert forwarded(flight) > 20
-    assert abs(flight.truth_enu()[2] - 20.0) > 2.0
+    assert abs(flight.truth_enu()[2] - 27.0) > 2.0
     assert stream.outside_m < 0.0

@@ -52,7 +52,7 @@ def test_L13_what_the_fence_refused_is_flown_only_when_sent_again_without_it() -
     assert flight.states(since_ns) == []
     assert (0.0, 7.0, -1.0) not in {setpoint.pos_ned for setpoint in flight.setpoints()}
     assert flight.done(flight.goto(*goal_enu)) == "complete"
-    flight.run(2.0)
+    flight.run(4.0)  # a PX4 that is sent the bare goal flies past it, and back
     assert flight.truth_enu()[0] == pytest.approx(7.0, abs=0.5)
 
 

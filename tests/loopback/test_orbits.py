@@ -577,7 +577,7 @@ def test_the_audit_of_its_record_finds_no_difference(monkeypatch: pytest.MonkeyP
     flight, client = flying("px4")
     assert asked(client, 10.0, 3.0, turn_rad=3.0, centre=(0.0, 10.0)) == ACCEPTED
     assert asked(client, 500.0, 3.0) == DENIED
-    flight.beating(12.0)
+    flight.beating(14.0)
     assert flight.is_in(State.HOVERING)
     result = audit(tape.take(), tape.attachments, "test", "")
     assert result.good, (result.notes, result.first[:5])
