@@ -27,7 +27,6 @@ OWN_NAME: Final = "on purpose: ours says what it is and how it is built"
 UNASKED: Final = (
     "to mend: parameters that the vehicle itself changes are not told unasked (MIS_TOTAL)"
 )
-CLIMB: Final = "ours gathers speed more slowly; another airframe, or its jerk: not looked into"
 
 PX4: Final[dict[str, str]] = {
     "text '[logger] ./log/<date>.ulg': ours only": LOGGER,
@@ -118,7 +117,6 @@ ARDUPILOT: Final[dict[str, str]] = {
     "first PARAM_VALUE: ours later": UNASKED,
     "first FENCE_STATUS: ours later": "chance: enabled for 0.16 s, told every 0.25 s",
     "rate descent, HEARTBEAT: ours more": "the recording lacks the one of 118 s",
-    "figure: take-off, fastest climb": CLIMB,
     "figure: LAND sent to ON_GROUND": "0.3 s sooner, of which 0.2 s may be the message's rate",
 }
 

@@ -54,13 +54,19 @@ def test_an_axis_that_is_not_there_is_centred(personality: Personality) -> None:
 
 
 @pytest.mark.parametrize(
-    ("personality", "lasts_s", "lost_s"), [("px4", 0.5, 0.5), ("ardupilot", 3.0, 4.0)]
+    ("personality", "lasts_s", "lost_s"), [("px4", 0.5, 0.5), ("ardupilot", 3.0, 1.0)]
 )
 def test_silence_ends_the_sticks_and_is_a_loss(
     personality: Personality, lasts_s: float, lost_s: float
 ) -> None:
-    """COM_RC_LOSS_T; RC_OVERRIDE_TIME, and RC_FS_TIMEOUT after it."""
-    radio = Radio(Parameters(personality))
+    """COM_RC_LOSS_T; RC_OVERRIDE_TIME, and RC_FS_TIMEOUT for who has no receiver.
+
+    Recorded of an ArduCopter with SIM_RC_FAIL = 1: a loss 0.96 s after the last override (B7).
+    """
+    parameters = Parameters(personality)
+    if personality == "ardupilot":
+        parameters.set("SIM_RC_FAIL", 1)
+    radio = Radio(parameters)
     assert not radio.lost(100 * S)
     radio.joystick(0, 0, 700, 0, S)
     last = S + int(lasts_s * S)
@@ -72,6 +78,35 @@ def test_silence_ends_the_sticks_and_is_a_loss(
     assert radio.last is not None
     radio.joystick(0, 0, 700, 0, 10 * S)
     assert not radio.lost(10 * S)
+
+
+def test_ardupilots_receiver_is_heard_where_overrides_end_and_that_is_no_loss() -> None:
+    """As recorded after both kinds of override (B5, B8): SITL's throttle is at its bottom."""
+    radio = Radio(Parameters("ardupilot"))
+    radio.joystick(500, 0, 700, 0, S)
+    hand = radio.sticks(4 * S - 1)
+    assert hand is not None
+    assert hand.pitch == pytest.approx(0.5, abs=0.03)
+    for wall_ns in (4 * S, 1000 * S):
+        assert radio.sticks(wall_ns) == Sticks(0.0, 0.0, 0.0, 0.0)
+        assert not radio.lost(wall_ns)
+    radio.joystick(0, 0, 700, 0, 1000 * S)
+    hand = radio.sticks(1000 * S)
+    assert hand is not None
+    assert hand.throttle == pytest.approx(0.7)
+
+
+def test_a_radio_that_hears_nothing_any_more_has_no_receiver_either() -> None:
+    """INJECT_FAILURE of the radio, where SIM_RC_FAIL says that there is one."""
+    radio = Radio(Parameters("ardupilot"))
+    radio.joystick(0, 0, 700, 0, S)
+    radio.deaf = True
+    radio.joystick(0, 0, 700, 0, 2 * S)
+    assert not radio.lost(2 * S - 1)
+    assert radio.lost(2 * S)
+    assert radio.sticks(4 * S) is None
+    radio.deaf = False
+    assert not radio.lost(4 * S)
 
 
 def test_channels_are_overridden_left_alone_and_given_back_one_by_one() -> None:

@@ -256,21 +256,61 @@ def test_px4_that_never_had_sticks_misses_none() -> None:
     [(0, "LOITER"), (1, "RTL"), (3, "LAND"), (4, "RTL"), (5, "LAND"), (6, "RTL"), (7, "BRAKE")],
 )
 def test_ardupilot_without_sticks_that_it_had(action: int, mode: str) -> None:
-    flight = aloft("ardupilot", FS_THR_ENABLE=action)
+    """Recorded of FS_THR_ENABLE = 1 with no receiver: 0.96 s after the last override (B7)."""
+    flight = aloft("ardupilot", FS_THR_ENABLE=action, SIM_RC_FAIL=1)
     flight.vehicle.set_mode_kind("hold")
-    hands_off(flight, 6.0)
+    hands_off(flight, 0.9)
+    assert flight.vehicle.mode_name == "LOITER"
+    assert not said(flight, "Radio Failsafe")
+    hands_off(flight, 1.1)
     assert flight.vehicle.mode_name == mode
     assert said(flight, "Radio Failsafe") == (action > 0)
-    flight.vehicle.joystick(0, 0, 500, 0, 56 * S)
+    assert (flight.vehicle.system_status == CRITICAL) == (action > 0)
+    flight.vehicle.joystick(0, 0, 500, 0, flight.vehicle.state.sense().wall_ns)
     flight.fly(0.3)
     assert said(flight, "Radio Failsafe Cleared") == (action > 0)
+    assert flight.vehicle.mode_name == mode
 
 
-@pytest.mark.parametrize(("options", "mode"), [(4, "GUIDED"), (0, "RTL")])
-def test_fs_options_let_guided_go_on_without_sticks(options: int, mode: str) -> None:
-    flight = aloft("ardupilot", FS_OPTIONS=options)
+@pytest.mark.parametrize("action", [0, 1, 3])
+def test_ardupilots_receiver_has_the_sticks_after_overrides(action: int) -> None:
+    """As recorded (B5): its throttle at the bottom sinks a LOITER by 2.5 m/s, all the way down."""
+    flight = aloft("ardupilot", 8.0, FS_THR_ENABLE=action)
+    flight.vehicle.set_mode_kind("hold")
+    hands_off(flight, 2.9)
+    assert flight.up_m == pytest.approx(8.0, abs=0.5)
+    before = len(flight.texts())
+    hands_off(flight, 3.1)
+    flight.fly(2.0)
+    assert flight.vehicle.truth.v_ned[2] == pytest.approx(2.5, abs=0.1)
+    flight.fly(8.0, lambda: flight.landed() is Landed.ON_GROUND)
+    assert flight.vehicle.mode_name == "LOITER"
+    assert flight.vehicle.armed
+    assert flight.texts()[before:] == []
+
+
+@pytest.mark.parametrize(
+    ("options", "mode", "text"),
+    [
+        (4, "GUIDED", "Radio Failsafe - Continuing Guided Mode"),
+        (0, "RTL", "Radio Failsafe"),
+    ],
+)
+def test_fs_options_let_guided_go_on_without_sticks(options: int, mode: str, text: str) -> None:
+    flight = aloft("ardupilot", FS_OPTIONS=options, SIM_RC_FAIL=1)
     hands_off(flight, 6.0)
     assert flight.vehicle.mode_name == mode
+    assert text in flight.texts()
+
+
+def test_ardupilot_flown_from_outside_goes_on_with_its_receiver() -> None:
+    """Overrides end in GUIDED: nothing strikes, and the throttle at the bottom is not flown."""
+    flight = aloft("ardupilot", FS_OPTIONS=0)
+    hands_off(flight, 6.0)
+    flight.fly(3.0)
+    assert flight.vehicle.mode_name == "GUIDED"
+    assert not said(flight, "Radio Failsafe")
+    assert flight.up_m == pytest.approx(5.0, abs=0.5)
 
 
 # --------------------------------------------------------------------------------- position

@@ -229,7 +229,8 @@ def switched(pulse_us: int) -> Script:
 def override_gone_s(setting: Setting) -> float:
     flight = setting.aloft()
     flight.hold(0.3)
-    return fly.waits(flight, lambda _: None, lambda f: f.vehicle.sticks is None, 8.0)
+    handed = flight.vehicle.sticks
+    return fly.waits(flight, lambda _: None, lambda f: f.vehicle.sticks != handed, 8.0)
 
 
 def circle(setting: Setting) -> HandFlight:
