@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from enum import Enum
 
 from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.clearance import (
@@ -36,21 +37,28 @@ from gcs.gate.policy.policy import Braking, Policy
 from gcs.gate.refusal import Refusal
 
 
+class Slack(Enum):
+    """How much nearer than the margin a stop may end."""
+
+    ERROR = "error"  # by the error of the position: one at the margin is the last that fits
+    POLICY = "policy"  # by the policy's slack
+    MARGIN = "margin"  # by the margin: what is sent to its goal may fly past it, and comes back
+
+
 @dataclass(frozen=True, slots=True)
 class FenceJudge:
     """Judges by the zones of one fence; see `clearance.py` for the three rules.
 
     `subject` is what a refusal's sentence begins with.  `floor_applies` says whether the floors of
     inclusion zones are considered.  `least_h_m`: the margin beside zones is no less, whatever the
-    policy's.  `no_slack`: of the slack of a stop only the error of the position is taken, so that
-    one at the margin is the last that keeps its limit.
+    policy's.
     """
 
     zones: tuple[Zone, ...]
     policy: Policy
     braking: Braking
     least_h_m: float = 0.0
-    no_slack: bool = False
+    slack: Slack = Slack.POLICY
 
     @property
     def margins(self) -> Margins:
@@ -155,16 +163,21 @@ class FenceJudge:
         enter an exclusion zone."""
         p, b = self.policy, self.braking
         if face in (Face.CEILING, Face.FLOOR):
-            slack_m = p.brake_slack_v_m
-            if self.no_slack:
-                slack_m = min(slack_m, b.position_error_v_m)
+            slack_m = self._slack_m(p.brake_slack_v_m, p.margin_v_m, b.position_error_v_m)
             return StopLimit(b.position_error_v_m, p.margin_v_m, slack_m, p.creep_m)
-        slack_m = p.brake_slack_h_m
-        if self.no_slack:
-            slack_m = min(slack_m, b.position_error_h_m)
+        slack_m = self._slack_m(p.brake_slack_h_m, p.margin_h_m, b.position_error_h_m)
         if face is Face.BODY:
             slack_m = min(slack_m, b.position_error_h_m + p.margin_h_m)
         return StopLimit(b.position_error_h_m, p.margin_h_m, slack_m, p.creep_m)
+
+    def _slack_m(self, policy_m: float, margin_m: float, error_m: float) -> float:
+        match self.slack:
+            case Slack.ERROR:
+                return min(policy_m, error_m)
+            case Slack.POLICY:
+                return policy_m
+            case Slack.MARGIN:
+                return max(policy_m, margin_m)
 
     def nearest(self, a_ned: Vec3, b_ned: Vec3) -> Margins:
         """The least horizontal and vertical distance from a-b to any boundary; inf without one."""

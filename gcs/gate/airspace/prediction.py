@@ -12,7 +12,7 @@ from gcs.gate.airspace import stopping
 from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.clearance import Measure
 from gcs.gate.airspace.explain import metres
-from gcs.gate.airspace.judge import FenceJudge
+from gcs.gate.airspace.judge import FenceJudge, Slack
 from gcs.gate.airspace.stopping import Path, StopBy
 from gcs.gate.policy.policy import Overshoot
 from gcs.gate.refusal import Code, Refusal
@@ -42,34 +42,42 @@ def bad_stop(
     """None where the vehicle can come to rest inside; else the way that ends nearest to it.
 
     Where the floor does not apply, a stop is no lower than the ground, at home's height.  The
-    numbers have where each way would end: how far from the limit, negative beyond it.
+    numbers have where each way would end: how far from the limit, negative beyond it.  One that
+    follows setpoints to its goal may fly past that by the margin: no other way is better then, as
+    it comes back by itself.
     """
-    judge, home_ned = bounds.judge, bounds.home_ned
+    home_ned = bounds.home_ned
     policy, autopilot = bounds.policy, bounds.autopilot
-    found: list[tuple[float, StopBy, Vec3, Measure]] = []
+    found: list[tuple[float, StopBy, Vec3, Measure, FenceJudge]] = []
     for by, (north_m, east_m, down_m) in stopping.ways_to_stop(
         pos_ned, v_ned, path, policy, autopilot, late_s
     ):
         if not floor_applies and home_ned is not None:
             down_m = min(down_m, max(pos_ned[2], home_ned[2]))
         stop_ned = (north_m, east_m, down_m)
+        judge = bounds.judge
+        if by is StopBy.SETPOINT:
+            judge = replace(judge, slack=Slack.MARGIN)
         measure = judge.broken_stop(pos_ned, stop_ned, floor_applies=floor_applies)
         if measure is None:
             return None
-        over_m = measure.least_m - judge.stop_limit(measure.face).limit_m
-        found.append((over_m, by, stop_ned, measure))
-    _, by, stop_ned, measure = max(found, key=lambda way: way[0])
+        over_m = measure.least_m - bounds.judge.stop_limit(measure.face).limit_m
+        found.append((over_m, by, stop_ned, measure, judge))
+    _, by, stop_ned, measure, judge = max(found, key=lambda way: way[0])
     limit_m, rest_m = judge.stop_limit(measure.face).limit_m, measure.least_m
     sentence = (
         f"at {fixed(math.hypot(*v_ned), 1)} m/s it would come to rest {metres(abs(rest_m))} m "
         f"{'past' if rest_m < 0.0 else 'from'} the edge of {measure.zone.title}, "
         f"{metres(abs(limit_m))} m {'asked' if limit_m >= 0.0 else 'past it allowed'}"
     )
+    if len(found) > 1:
+        compared = (f"{way.value} {metres(-over_m)} m" for over_m, way, *_ in found)
+        sentence += f" (past the limit by {', by '.join(compared)})"
     numbers = (
         ("clear_m", measure.start_m),
         ("stop_clear_m", rest_m),
         ("limit_m", limit_m),
-        *((f"{way.value}_over_limit_m", over_m) for over_m, way, _, _ in found),
+        *((f"{way.value}_over_limit_m", over_m) for over_m, way, *_ in found),
         *stopping_numbers(judge, v_ned),
     )
     return BadStop(by, stop_ned, measure, sentence, numbers)

@@ -49,20 +49,22 @@ class TestInOpenAir:
             ("px4", 0.0, 100.0, 2.5, 2.63158),
             # most: 12 m/s, and 12 / 0.95 m
             ("px4", 10.0, 100.0, 12.0, 12.63158),
-            # one that is faster than asked is asked for as much less: 11 / 0.95 m
-            ("px4", 13.0, 100.0, 12.0, 11.57895),
-            # the end: sqrt(2 2 (5 - 2 / 2 0.95^2)); and 3.94562 - (6 - 3.94562) = 1.89124 m/s
-            ("px4", 6.0, 5.0, 3.94562, 1.99078),
-            # and so near that it flies to the goal itself: 0.95 x 1.5 m/s
-            ("px4", 2.0, 1.5, 1.425, 0.89474),
+            # one that is 1 m/s faster than asked is asked for 3 m/s less: 9 / 0.95 m
+            ("px4", 13.0, 100.0, 12.0, 9.47368),
+            # the end: sqrt(2 2 (5 - 2 / 2 0.95^2)); and 3.94562 - 3 (4.5 - 3.94562) = 2.28248 m/s
+            ("px4", 4.5, 5.0, 3.94562, 2.40261),
+            # no less than to stay where it is
+            ("px4", 6.0, 5.0, 3.94562, 0.0),
+            # and so near that it flies to the goal itself: 0.95 x 1.5 m/s, less 3 (1.6 - 1.425)
+            ("px4", 1.6, 1.5, 1.425, 0.94737),
             ("px4", 0.0, 1.5, 1.425, 1.5),
             # gain: 5 m/s, and 5^2 / 2 2.5 + 2.5 / 2 m
             ("ardupilot", 0.0, 100.0, 5.0, 6.25),
             # most: 11 m/s, and 11^2 / 2 2.5 + 1.25 m
             ("ardupilot", 8.0, 100.0, 11.0, 25.45),
-            # the end: sqrt(2 2.5 (5 - 2.5 / 2)) = 4.33013 m/s, and 4.33013 - (5 - 4.33013) m/s,
-            # of which it is asked 3.66025^2 / 2 2.5 + 1.25 m ahead
-            ("ardupilot", 5.0, 5.0, 4.33013, 3.92949),
+            # the end: sqrt(2 2.5 (5 - 2.5 / 2)) = 4.33013 m/s, and 4.33013 - 3 (4.5 - 4.33013) m/s,
+            # of which it is asked 3.82051^2 / 2 2.5 + 1.25 m ahead
+            ("ardupilot", 4.5, 5.0, 4.33013, 4.16926),
         ],
     )
     def test_level(
