@@ -55,6 +55,13 @@ class Circle:
         """Metres inside the circle, negative outside."""
         return self.radius_m - _distance(p, self.centre_en)
 
+    def nearest_edge(self, p: Point) -> Point:
+        """The point of the circle nearest to p; to the east of its centre, where p is that."""
+        away_m = _distance(p, self.centre_en)
+        if away_m == 0.0:
+            return (self.centre_en[0] + self.radius_m, self.centre_en[1])
+        return along(self.centre_en, p, self.radius_m / away_m)
+
     def inner_clearance(self, a: Point, b: Point) -> float:
         """The least clearance along a-b.  A disc is convex, so it is at one of the ends."""
         return min(self.clearance(a), self.clearance(b))
@@ -104,6 +111,10 @@ class Polygon:
         gap = self._gap(a, b)
         return min(ends, gap, *(self.clearance(m) for m in self._middles(a, b, gap)))
 
+    def nearest_edge(self, p: Point) -> Point:
+        """The point of the boundary nearest to p."""
+        return min((_foot(p, a, b) for a, b in self.edges), key=lambda foot: _distance(p, foot))
+
     def outer_clearance(self, a: Point, b: Point) -> float:
         """Metres from the polygon to a-b, outside it; negative if any part of a-b is inside."""
         gap = self._gap(a, b)
@@ -144,6 +155,11 @@ def _polygon_clearance(polygon: Polygon, p: Point) -> float:
 def along(a: Point, b: Point, t: float) -> Point:
     """The point of the line a-b at parameter t: a at 0, b at 1."""
     return (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]))
+
+
+def _foot(p: Point, a: Point, b: Point) -> Point:
+    """The point of the segment a-b nearest to p."""
+    return along(a, b, _projection(p, a, b))
 
 
 def point_segment_distance(p: Point, a: Point, b: Point) -> float:

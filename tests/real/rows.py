@@ -134,7 +134,12 @@ def stops(rng: random.Random) -> list[Row]:
 
 
 def states() -> list[Row]:
-    return [Row("hold in", word=word) for word in ("HOVERING", "MOVING", "RETURNING", "LANDING")]
+    back = [
+        Row("way back", direction=direction, leg_m=24.0, goal_m=64.0) for direction in ("E", "NW")
+    ]
+    return back + [
+        Row("hold in", word=word) for word in ("HOVERING", "MOVING", "RETURNING", "LANDING")
+    ]
 
 
 TRICKS = (

@@ -100,7 +100,8 @@ def gps_is_told(flight: Flight) -> str:
 
 
 def stop(flight: Flight, row: Row) -> Told:
-    """Told to stop at a speed: no farther than the policy predicts, from truth's speed then."""
+    """Told to stop at a speed: no farther than the policy predicts, from the greatest speed that it
+    had from then on: the gate counts on the speed that the vehicle was asked for."""
     flight.in_air_at(row, row.start)
     pilot, observer = flight.library(row), flight.observer
     taken = pilot.take()
@@ -115,11 +116,11 @@ def stop(flight: Flight, row: Row) -> Told:
     ask = pilot.station.abort if row.word == "abort" else pilot.station.hold
     told = outcome_of(lambda: ask(timeout_s=30.0))
     observer.at_rest(30.0)
-    unit, speed = row.unit, first.speed_m_s
+    unit, stopping = row.unit, [s for s in observer.truth.samples if s.at_s >= first.at_s]
+    speed = max(s.speed_m_s for s in stopping)
     ways = [
         sum(u * (b - a) for u, a, b in zip(unit, first.position_enu, s.position_enu, strict=True))
-        for s in observer.truth.samples
-        if s.at_s >= first.at_s
+        for s in stopping
     ]
     braking = DEFAULT.braking_of(flight.kind.personality)
     most = speed * braking.react_s + speed**2 / (2.0 * braking.a_brake_h_m_s2)
@@ -129,7 +130,9 @@ def stop(flight: Flight, row: Row) -> Told:
 
 
 def takeoff(flight: Flight, row: Row) -> Told:
-    """Ends at the height that was asked for, by the vehicle's own estimate; the truth is told."""
+    """Ends at the height that was asked for, by what the station was told then; the truth is told.
+
+    A one-shot command is judged by the estimate after it: half a metre."""
     flight.on_ground(row)
     flight.mark()
     if row.by == "one-shot":
@@ -138,11 +141,36 @@ def takeoff(flight: Flight, row: Row) -> Told:
         told = pilot.ask("takeoff", row.figure) if told == "complete" else f"arm: {told}"
     else:
         told = flight.take_off(row, row.figure)
-    estimate = flight.observer.estimate
+    home, estimate = flight.observer.home_local, flight.observer.estimate
     assert estimate is not None
-    text = f"{told}: {flight.from_home[2]:.2f} m up, {estimate[2]:.2f} by its own estimate"
-    right = told == "complete" and abs(estimate[2] - row.figure) <= TAKEOFF_M
-    return text, "" if right else text
+    up_m, within_m = estimate[2], 0.5
+    if flight.current is not None and home is not None:
+        up_m, within_m = flight.current.station.position_enu[2] - home[2], TAKEOFF_M
+    text = f"{told}: {flight.from_home[2]:.2f} m up, {up_m:.2f} by its own estimate"
+    return text, "" if told == "complete" and abs(up_m - row.figure) <= within_m else text
+
+
+def way_back(flight: Flight, row: Row) -> Told:
+    """Somebody else has left it outside: `resume` flies it back, nowhere farther out."""
+    flight.in_air_at(row, row.start)
+    pilot, observer = flight.library(row), flight.observer
+    if not observer.fly_to(row.at(row.goal_m), 60.0):
+        return "not brought outside", "not brought outside"
+    observer.mode(flight.kind.hold_custom_mode)
+    observer.at_rest(20.0)
+    flight.marks = None  # it is outside as it should be
+    first, farthest_m = len(observer.truth.samples), -row.clearance_m(flight.from_home)
+    refused = pilot.goto_at_once(flight.local(row.start))
+    told = pilot.take()
+    observer.wait(lambda: row.clearance_m(flight.from_home) > 1.0, 40.0)
+    observer.at_rest(20.0)
+    out_m = [-row.clearance_m(observer.from_home(s.position_enu))
+             for s in observer.truth.samples[first:]]  # fmt: skip
+    flight.mark()
+    then = pilot.goto(flight.local(row.start))
+    text = f"{told}: {out_m[0]:.1f}, at most {max(out_m):.1f}, at last {out_m[-1]:.1f} m outside"
+    right = told == then == "complete" and max(out_m) <= farthest_m + 1.0 and out_m[-1] < -1.0
+    return text, "" if right and "resume" in refused else f"{text}; {refused}; {then}"
 
 
 def landing(flight: Flight, row: Row) -> Told:
@@ -288,6 +316,7 @@ KINDS: dict[str, Callable[[Flight, Row], Told]] = {
     "stop": stop,
     "takeoff": takeoff,
     "landing": landing,
+    "way back": way_back,
     "mission": mission,
     "hold in": hold_in,
     "hostile": hostile,

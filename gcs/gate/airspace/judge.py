@@ -95,6 +95,21 @@ class FenceJudge:
                 return refusal
         return None
 
+    def way_in(self, subject: str, a_ned: Vec3, b_ned: Vec3) -> Refusal | None:
+        """Refuses a leg that begins outside, or nearer than the margin, and comes nowhere farther
+        out than at its start; of what it begins inside of, it keeps the margin all along."""
+        motion = Motion.between(a_ned, b_ned)
+        for zone in self.zones:
+            measures = inclusion_measures(zone, motion, floor_applies=True)
+            if not zone.inclusion:
+                swept = swept_body_measure(zone, motion, self.margins.v_m)
+                measures = [] if swept is None else [swept]
+            for measure in measures:
+                margin_m = self.margins.of(measure.face)
+                if not measure.least_m >= min(margin_m, measure.start_m) - TOLERANCE_M:
+                    return zone_refusal(subject, measure, margin_m, leg=True)
+        return None
+
     def hull(
         self,
         subject: str,

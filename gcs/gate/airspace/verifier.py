@@ -15,7 +15,15 @@ from gcs.frames import Vec3
 from gcs.gate.airspace import pace
 from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.projection import Origin, Projection
-from gcs.gate.airspace.questions import braking, goals, missions, positions, returns, streams
+from gcs.gate.airspace.questions import (
+    braking,
+    excursions,
+    goals,
+    missions,
+    positions,
+    returns,
+    streams,
+)
 from gcs.gate.airspace.zones import build_zones
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import ZoneSpec
@@ -37,6 +45,9 @@ class Verifier(Bounds):
     hold_point = positions.hold_point
     start = positions.start
     outside = positions.outside
+
+    way_back = excursions.way_back
+    leaves_way_back = excursions.leaves_way_back
 
     stream_sample = streams.stream_sample
 

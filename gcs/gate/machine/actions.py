@@ -12,6 +12,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
+from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.effects import CommandKind, Level, OutcomeKind, Ruling, SwitchedFence
 from gcs.gate.machine import commanding, holding, streaming, verifying
@@ -107,6 +108,16 @@ def _take_control(turn: Turn) -> None:
     """Send the verified present position as setpoint from now on, and command guided mode."""
     assert turn.memory.pos_ned is not None
     _take_control_at(turn, turn.memory.pos_ned)
+
+
+def _take_control_on_way_in(turn: Turn) -> None:
+    """As `_take_control`, with a place inside as setpoint: the vehicle is outside, and flies there
+    slowly."""
+    way = verifying.way_in(turn)
+    assert way is not None
+    _take_control_at(turn, way.to_ned)
+    turn.memory.hold = Goal(way.to_ned, None, way.evidence, way_in=True)
+    turn.say(Level.WARNING, f"It is outside, and flies back inside: to {place(way.to_ned)}")
 
 
 def _take_control_at_top(turn: Turn) -> None:
@@ -220,6 +231,7 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.REFUSE_GOAL: _refuse_goal,
         Action.HOLD_AT_GOAL: _hold_at_goal,
         Action.TAKE_CONTROL: _take_control,
+        Action.TAKE_CONTROL_ON_WAY_IN: _take_control_on_way_in,
         Action.TAKE_CONTROL_AT_TOP: _take_control_at_top,
         Action.FLY_TO_TOP: _fly_to_top,
         Action.ASK_GUIDED: _ask_guided,

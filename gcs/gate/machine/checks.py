@@ -20,6 +20,13 @@ def _severity(turn: Turn) -> Refusal | None:
     return Refusal(Code.SEVERITY, turn.severity_sentence(), (("severity", float(turn.severity)),))
 
 
+def _severity_but_fence(turn: Turn) -> Refusal | None:
+    """That it is outside does not forbid to fly back inside."""
+    names = [name for name, _ in turn.memory.conditions if name is not Condition.FENCE_BREACHED]
+    worst = max((turn.policy.severities[name] for name in names), default=Severity.NOMINAL)
+    return None if worst < Severity.HOLD else _severity(turn)
+
+
 def _recorder(turn: Turn) -> Refusal | None:
     failed = any(name is Condition.RECORDER_FAILED for name, _ in turn.memory.conditions)
     if turn.policy.arm_requires_recording and failed:
@@ -60,6 +67,7 @@ def _position(turn: Turn) -> Refusal | None:
 CHECKS: Final[Mapping[Check, Callable[[Turn], Refusal | None]]] = MappingProxyType(
     {
         Check.SEVERITY: _severity,
+        Check.SEVERITY_BUT_FENCE: _severity_but_fence,
         Check.RECORDER: _recorder,
         Check.ARMED: _armed,
         Check.ON_GROUND: _on_ground,

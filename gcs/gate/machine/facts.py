@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final, NamedTuple, assert_never
 
 from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.questions.braking import Breach
 from gcs.gate.airspace.verifier import Verifier
-from gcs.gate.condition import Severity
+from gcs.gate.condition import Condition, Severity
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import (
     AccuracySeen,
@@ -39,7 +40,7 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.events import SAW, Event, event_of
-from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS
+from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS, Memory
 from gcs.gate.machine.progress import arrival_radius_h_m, within_arrival
 from gcs.gate.machine.sentences import ASKED_FOR, result_word
 from gcs.gate.machine.turn import Turn
@@ -241,6 +242,8 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
         memory.within_since_ns = turn.now_ns
     if jumped:
         yield Occurrence(Event.POSITION_JUMPED)
+    if memory.comes_back and _is_inside(memory):
+        memory.hold = None if memory.hold is None else replace(memory.hold, way_in=False)
     if memory.verifier is not None and memory.control is not Control.NONE:
         breach = memory.verifier.predicted_stop(
             seen.pos_ned,
@@ -253,6 +256,15 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
             why = Refusal(Code.FENCE_BREACH, breach.sentence, breach.numbers, breach.zone)
             yield Occurrence(Event.BREACH, why, breach)
     yield Occurrence(Event.POSITION)
+
+
+def _is_inside(memory: Memory) -> bool:
+    """It has come back: it may stay where it is, and nothing says that it is outside."""
+    if memory.verifier is None or memory.pos_ned is None or memory.v_ned is None:
+        return False
+    told = any(name is Condition.FENCE_BREACHED for name, _ in memory.conditions)
+    judged = memory.verifier.hold_point(memory.pos_ned, memory.v_ned, (), floor_applies=True)
+    return not told and not isinstance(judged, Refusal)
 
 
 def _floor_applies(turn: Turn) -> bool:

@@ -15,7 +15,7 @@ from gcs.gate.airspace.attitude_samples import BeforeThis
 from gcs.gate.airspace.mission_box import MissionBox
 from gcs.gate.airspace.pace import Paced
 from gcs.gate.airspace.return_place import HOME, ReturnPlace
-from gcs.gate.airspace.stopping import OwnPath, Path, Setpoints
+from gcs.gate.airspace.stopping import OwnPath, Path, Setpoints, WayIn
 from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.condition import Condition
@@ -50,6 +50,7 @@ class Goal:
     pos_ned: Vec3
     yaw_rad: float | None
     evidence: tuple[tuple[str, float], ...]
+    way_in: bool = False  # the vehicle that is sent there began outside
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,11 +196,26 @@ class Memory:
             return OwnPath(self.mission_within)
         if self.flown_state in OWN_PATHS:
             return OwnPath()
+        if self.comes_back and self.hold is not None:
+            return WayIn(self.hold.pos_ned)
         if self.flown_state is State.STREAMING and self.flown is not None:
             sample = self.flown.sample
             return Setpoints() if sample.pos_ned is not None and sample.v_ned is None else None
         follows = self.control is Control.OURS and self.flown_state is not State.HOLDING
         return Setpoints() if follows and (self.goal or self.hold) is not None else None
+
+    @property
+    def comes_back(self) -> bool:
+        """It is outside, and is flown to a place inside."""
+        return self.flown_state is State.HOVERING and self.hold is not None and self.hold.way_in
+
+    @property
+    def counting(self) -> tuple[Condition, ...]:
+        """The conditions that count: that it is outside forbids no way back inside."""
+        names = tuple(name for name, _ in self.conditions)
+        if not self.comes_back:
+            return names
+        return tuple(name for name in names if name is not Condition.FENCE_BREACHED)
 
     @property
     def returns_to(self) -> tuple[ReturnPlace, ...]:

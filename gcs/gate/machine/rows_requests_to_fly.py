@@ -64,6 +64,13 @@ take_control: Final = Branch(
     do=(Action.TAKE_CONTROL,),
     to=HOVERING,
 )
+come_back_inside: Final = Branch(
+    when=(Guard.WAY_IN_CLEARS,),
+    needs=(Check.SEVERITY_BUT_FENCE,),
+    reply=Reply.ACCEPTED,
+    do=(Action.TAKE_CONTROL_ON_WAY_IN,),
+    to=HOVERING,
+)
 guided_on_ground: Final[Cell] = (
     Branch(when=(Guard.STANDS_IN_GUIDED, Guard.TASK_UNDER_WAY), refuse=Code.BUSY),
     Branch(when=(Guard.STANDS_IN_GUIDED, Guard.MODE_GUIDED), reply=Reply.DONE),
@@ -136,7 +143,7 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=complete_at_once),
         during(RETURNING, LANDING, then=busy_or_not_ours),
         during(HOLDING, then=refuse(Code.HOLDING)),
-        during(EXTERNAL, then=(refuse_unless_airborne, take_control)),
+        during(EXTERNAL, then=(refuse_unless_airborne, come_back_inside, take_control)),
     ),
     Event.RESUME: row(
         during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),
@@ -147,7 +154,7 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         during(VERIFYING, then=cannot_happen),
         during(MOVING, STREAMING, TAKING_PICTURE, FLYING_MISSION, then=refuse(Code.BUSY)),
         during(RETURNING, LANDING, then=busy_or_not_ours),
-        during(HOLDING, EXTERNAL, then=(refuse_unless_airborne, take_control)),
+        during(HOLDING, EXTERNAL, then=(refuse_unless_airborne, come_back_inside, take_control)),
     ),
     Event.ARM: row(
         during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),

@@ -10,10 +10,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
+from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis, lean_of
 from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.questions.excursions import WayBack
 from gcs.gate.airspace.stream_samples import TICK_S, StreamSample
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.airspace.zones import Zone
@@ -47,9 +49,25 @@ def position(turn: Turn, gained_ned: tuple[Vec3, ...] = ()) -> Refusal | None:
     return _keep(turn, judged)
 
 
+def way_in(turn: Turn) -> WayBack | None:
+    """The way back inside of a vehicle that flies where it may not stay; None where none clears, or
+    its position is too old."""
+    memory = turn.memory
+    if memory.verifier is None or turn.stale or memory.pos_ned is None or memory.v_ned is None:
+        return None
+    at, v_ned = memory.pos_ned, memory.v_ned
+    if isinstance(memory.verifier.hold_point(at, v_ned, (), floor_applies=True), Cleared):
+        return None
+    judged = memory.verifier.way_back(at, v_ned)
+    return judged if isinstance(judged, WayBack) else None
+
+
 def _ways_out(turn: Turn, pos_ned: Vec3) -> str:
     """What is left to a vehicle that flies where it may not hover."""
     memory, ways = turn.memory, ["land"]
+    back = way_in(turn)
+    if back is not None:
+        ways.insert(0, f"resume (it flies back to {place(back.to_ned)})")
     if memory.verifier is not None and memory.returns_to and memory.return_up_m is not None:
         judged = memory.verifier.return_paths(pos_ned, memory.returns_to, memory.return_up_m)
         ways += [] if isinstance(judged, Refusal) else ["rtl"]

@@ -123,4 +123,4 @@ class Edge:
 def severity_of(policy: Policy, memory: Memory) -> Severity:
     """Of all conditions the worst."""
     severities = policy.severities
-    return max((severities[name] for name, _ in memory.conditions), default=Severity.NOMINAL)
+    return max((severities[name] for name in memory.counting), default=Severity.NOMINAL)

@@ -217,7 +217,7 @@ class TestChecks:
         script.feed(self.WRONG)
         assert script.refusal(script.ask(wanted)) is Code.SEVERITY
         script.feed(ConditionChanged(Condition.BATTERY_LOW, False))
-        script.at(170.0, 0.0, UP)
+        script.at(170.0, 0.0, UP, (2.0, 0.0, 0.0))  # too fast for the way back inside
         assert script.refusal(script.ask(wanted)) is Code.OUTSIDE_FENCE
         script.reports_landed = False
         script.wait(4.0)
@@ -234,7 +234,7 @@ class TestChecks:
         script.feed(self.WRONG)
         assert script.refusal(script.ask(Resume())) is Code.SEVERITY
         script.feed(ConditionChanged(Condition.BATTERY_LOW, False))
-        script.at(170.0, 0.0, UP)
+        script.at(170.0, 0.0, UP, (2.0, 0.0, 0.0))
         assert script.refusal(script.ask(Resume())) is Code.OUTSIDE_FENCE
         script.reports_landed = False
         script.wait(4.0)
