@@ -144,8 +144,9 @@ def takeoff(flight: Flight, row: Row) -> Told:
     home, estimate = flight.observer.home_local, flight.observer.estimate
     assert estimate is not None
     up_m, within_m = estimate[2], 0.5
-    if flight.current is not None and home is not None:
-        up_m, within_m = flight.current.station.position_enu[2] - home[2], TAKEOFF_M
+    at = None if flight.current is None else flight.current.station.position_enu
+    if at is not None and home is not None:
+        up_m, within_m = at[2] - home[2], TAKEOFF_M
     text = f"{told}: {flight.from_home[2]:.2f} m up, {up_m:.2f} by its own estimate"
     return text, "" if told == "complete" and abs(up_m - row.figure) <= within_m else text
 
