@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Final
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.questions.excursions import WayBack
 from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.memory import Memory
 from gcs.gate.machine.rules import Check
@@ -31,7 +32,11 @@ def why_not_resume(policy: Policy, memory: Memory, now_ns: int) -> Refusal | Non
     if turn.stale or memory.pos_ned is None:
         return no_fresh_position(memory)
     judged = memory.verifier.hold_point(memory.pos_ned, AT_REST, (), floor_applies=True)
-    return judged if isinstance(judged, Refusal) else CHECKS[Check.SEVERITY](turn)
+    if not isinstance(judged, Refusal):
+        return CHECKS[Check.SEVERITY](turn)
+    if isinstance(memory.verifier.way_back(memory.pos_ned, AT_REST), WayBack):
+        return CHECKS[Check.SEVERITY_BUT_FENCE](turn)
+    return judged
 
 
 def why_not_go_to(memory: Memory, goal_ned: Vec3, yaw_rad: float | None) -> Refusal | None:

@@ -53,3 +53,13 @@ def test_a_position_that_is_too_old_does(state: State) -> None:
 def test_standing_on_the_ground_does() -> None:
     script, _ = flight(State.GROUNDED)
     assert why(script) is Code.NOT_FLYING
+
+
+def test_being_outside_does_not_where_the_way_back_clears() -> None:
+    script = Script(policy("default")).fly(20.0)
+    script.ask(Hold())
+    script.at(155.0, 0.0, 20.0)
+    script.feed(ConditionChanged(Condition.FENCE_BREACHED, True))
+    assert why(script) is None
+    script.feed(ConditionChanged(Condition.ESTIMATOR_UNRELIABLE, True))
+    assert why(script) is Code.SEVERITY
