@@ -64,10 +64,6 @@ class Library:
             return f"control {taken}"
         return outcome_of(lambda: self.station.goto(*goal, timeout_s=LEG_S))
 
-    def goto_at_once(self, goal: Vector) -> str:
-        """Without control, or from a hold."""
-        return outcome_of(lambda: self.station.goto(*goal, timeout_s=LEG_S))
-
     def kill(self) -> None:
         for one in joined.running_stations():
             os.kill(one.pid, signal.SIGKILL)

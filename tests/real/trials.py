@@ -152,7 +152,7 @@ def takeoff(flight: Flight, row: Row) -> Told:
 
 
 def way_back(flight: Flight, row: Row) -> Told:
-    """Somebody else has left it outside: `resume` flies it back, nowhere farther out."""
+    """Somebody else has left it outside: taking control flies it back, nowhere farther out."""
     flight.in_air_at(row, row.start)
     pilot, observer = flight.library(row), flight.observer
     if not observer.fly_to(row.at(row.goal_m), 60.0):
@@ -161,7 +161,6 @@ def way_back(flight: Flight, row: Row) -> Told:
     observer.at_rest(20.0)
     flight.marks = None  # it is outside as it should be
     first, farthest_m = len(observer.truth.samples), -row.clearance_m(flight.from_home)
-    refused = pilot.goto_at_once(flight.local(row.start))
     told = pilot.take()
     observer.wait(lambda: row.clearance_m(flight.from_home) > 1.0, 40.0)
     observer.at_rest(20.0)
@@ -171,7 +170,7 @@ def way_back(flight: Flight, row: Row) -> Told:
     then = pilot.goto(flight.local(row.start))
     text = f"{told}: {out_m[0]:.1f}, at most {max(out_m):.1f}, at last {out_m[-1]:.1f} m outside"
     right = told == then == "complete" and max(out_m) <= farthest_m + 1.0 and out_m[-1] < -1.0
-    return text, "" if right and "resume" in refused else f"{text}; {refused}; {then}"
+    return text, "" if right else f"{text}; then {then}"
 
 
 def landing(flight: Flight, row: Row) -> Told:
