@@ -60,6 +60,20 @@ def test_a_jump_to_nowhere_does_not_leave() -> None:
         to_wire(plan, "px4")
 
 
+def test_a_tag_is_the_same_on_the_wire() -> None:
+    tag, jump = simple(2, 600, 2, [7] + [0] * 6), simple(3, 601, 2, [7, 2, 0, 0, 0, 0, 0])
+    plan = read_json(plan_document(waypoint(1, 47.39775, 8.5456, 10, command=22), tag, jump))
+
+    items = to_wire(plan, "ardupilot")
+
+    assert [(each.command, each.param1) for each in items[2:]] == [(600, 7.0), (601, 7.0)]
+    assert [each.params for each in from_wire(items, "ardupilot").items[1:]] == [
+        each.params for each in plan.items[1:]
+    ]
+    with pytest.raises(PlanError, match="no item"):
+        to_wire(read_json(plan_document(jump)), "ardupilot")
+
+
 def test_a_height_that_is_not_set_goes_to_px4_alone() -> None:
     document = box()
     document["mission"]["items"][0]["params"][6] = None
