@@ -78,7 +78,10 @@ def test_bad_tags(tags: list[float], jump: list[float | None], index: int, words
 
 
 def test_a_loop_to_a_tag_without_a_waypoint() -> None:
-    marks, again = simple(3, 600, 2, [7] + [0] * 6), simple(4, 601, 2, [7, 5, 0, 0, 0, 0, 0])
+    marks, again = (
+        simple(3, 600, 2, [7, 0, 0, 0, 0, 0, 0]),
+        simple(4, 601, 2, [7, 5, 0, 0, 0, 0, 0]),
+    )
     found = findings(*in_order(TAKEOFF, AWAY, marks, again), who="ardupilot")
     assert "without a waypoint" in only([f for f in found if f.level is Level.ERROR]).what
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -171,7 +172,7 @@ def geographic(frame: Frame, place: Geographic, command: int = 16) -> Item:
 def test_a_jump_to_a_tag_is_flown_as_a_jump_to_the_item_that_has_it() -> None:
     """Behind, ahead, from a spline, and never: each leg, region and circle is the same."""
     first, second, last = at(10, 0, 5), at(10, 10, 8, 82), at(0, 10, 5)
-    ways = [
+    ways: list[Callable[[Item], tuple[Item, ...]]] = [
         lambda jump: (at(0, 0, 5, 22), tag(7), first, second, jump, last),
         lambda jump: (at(0, 0, 5, 22), first, jump, second, tag(7), last),
         lambda jump: (at(0, 0, 5, 22), tag(3), first, tag(7), at(5, 5, 5, 18, CIRCLE), jump),

@@ -61,7 +61,7 @@ def test_a_jump_to_nowhere_does_not_leave() -> None:
 
 
 def test_a_tag_is_the_same_on_the_wire() -> None:
-    tag, jump = simple(2, 600, 2, [7] + [0] * 6), simple(3, 601, 2, [7, 2, 0, 0, 0, 0, 0])
+    tag, jump = simple(2, 600, 2, [7, 0, 0, 0, 0, 0, 0]), simple(3, 601, 2, [7, 2, 0, 0, 0, 0, 0])
     plan = read_json(plan_document(waypoint(1, 47.39775, 8.5456, 10, command=22), tag, jump))
 
     items = to_wire(plan, "ardupilot")

@@ -280,7 +280,7 @@ def test_the_origin_is_waited_for_before_the_plan_is_placed() -> None:
     script = upload(telemetry=telemetry).read(BOX).run(20.0)
     assert not script.job.over
     assert [log.text for log in script.of(Log)] == [
-        f"{script.job.source}: waiting for the vehicle's origin and home"
+        "a.plan: waiting for the vehicle's origin and home"
     ]
     telemetry.origin = origin
     assert script.run(5.0).outcome == COMPLETE
