@@ -39,9 +39,6 @@ WAIT = click.Option(
     metavar="S",
     help="Seconds to wait for the effect.",
 )
-SETTLE_S = 30.0
-"""A mission cannot be placed without the vehicle's origin and home; on a link that loses frames
-each may have to be asked for some times, every two seconds."""
 LINK_OPTIONS = (LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
 
 
@@ -198,7 +195,6 @@ def _run(requests: tuple[Ask, ...], **to: Unpack[ToVehicle]) -> None:
         to["as_json"],
         what,
         take=to["take"],
-        settle_s=min(to["wait"], SETTLE_S),
         wanted=asked_for(),
     )
     task = oneshot_session.sending(SendRequests(requests), to["wait"])

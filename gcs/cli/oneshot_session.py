@@ -23,7 +23,6 @@ from gcs.operator import event_text
 from gcs.operator.chosen_vehicle import ChosenVehicle, Way
 from gcs.operator.client import StationClient
 from gcs.operator.dialogue import (
-    SETTLE_WAIT_S,
     Connection,
     Dialogue,
     InterruptSource,
@@ -45,7 +44,7 @@ class OneShotConfig:
     """`wait_s` limits the wait for the outcome, `timeout_s` that for a vehicle; seconds.
 
     `cautions`: show what is always wrong with this vehicle, too.  `placed`: wait for its position,
-    which a stop needs not, and then `settle_s` for its home and landed state.
+    which a stop needs not, and then a moment for its home and landed state.
 
     Through a running station: `anywhere` says that the only one that runs will do, whatever its
     link is; `take`, to take control over from another operator; `stops`, that nothing is to delay
@@ -63,7 +62,6 @@ class OneShotConfig:
     stops: bool = False
     at_once: bool = False
     placed: bool = True
-    settle_s: float = SETTLE_WAIT_S
     wanted: Wanted = ANY_STATION
 
 
@@ -116,7 +114,7 @@ def run_over(
         dialogue = Dialogue(connection, interrupts, on_event)
         try:
             if how.placed and not how.at_once:
-                dialogue.wait_for_vehicle(how.timeout_s, how.settle_s)
+                dialogue.wait_for_vehicle(how.timeout_s)
             elif not how.at_once:
                 dialogue.wait_until_heard(how.timeout_s)
             if how.take:

@@ -34,8 +34,16 @@ KINDS: dict[int, Kind] = {
     Cmd.CONDITION_DISTANCE: Kind.ACT,
     Cmd.CONDITION_YAW: Kind.ACT,
     Cmd.DO_JUMP: Kind.JUMP,
+    Cmd.JUMP_TAG: Kind.ACT,
+    Cmd.DO_JUMP_TAG: Kind.JUMP,
     Cmd.DO_CHANGE_SPEED: Kind.ACT,
     Cmd.DO_SET_HOME: Kind.SET_HOME,
+    Cmd.DO_SET_RELAY: Kind.ACT,
+    Cmd.DO_REPEAT_RELAY: Kind.ACT,
+    Cmd.DO_SET_SERVO: Kind.ACT,
+    Cmd.DO_REPEAT_SERVO: Kind.ACT,
+    Cmd.DO_GRIPPER: Kind.ACT,
+    Cmd.DO_WINCH: Kind.ACT,
     Cmd.DO_LAND_START: Kind.ACT,
     Cmd.DO_SET_ROI_LOCATION: Kind.ACT,
     Cmd.DO_SET_ROI_NONE: Kind.ACT,
@@ -67,6 +75,7 @@ WITH_PLACE: frozenset[int] = frozenset(
         Cmd.DO_SET_ROI_LOCATION,
         Cmd.DO_SET_ROI,
         Cmd.DO_LAND_START,
+        Cmd.NAV_PAYLOAD_PLACE,
     }
 )
 """Known commands whose last three parameters are a place, unless their frame says MISSION."""

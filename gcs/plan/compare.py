@@ -84,7 +84,7 @@ def _differences(ours: WireItem, theirs: WireItem, autopilot: AutopilotName) -> 
 
     has_place = commands.has_place(ours.command, ours.frame) and ours.frame != MavFrame.MISSION
     if not has_place:
-        # PX4 gives a return back in the frame without a position, with what was a place as degrees.
+        # What stands in the place of a return means nothing to PX4.
         numbers = autopilot == "px4" and ours.command != Cmd.NAV_RETURN_TO_LAUNCH
         if numbers and (ours.x, ours.y) != (theirs.x, theirs.y):
             differ("param5, param6", (ours.x, ours.y), (theirs.x, theirs.y))

@@ -27,6 +27,7 @@ from gcs.plan.circles import circle_ends, entries
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError
 from gcs.plan.items import Flown, flown_as
+from gcs.plan.jumps import jump_target
 from gcs.plan.legs import Ground, ProblemKind
 from gcs.plan.model import AutopilotName, Item, Plan
 from gcs.wire.ids import Cmd
@@ -35,6 +36,8 @@ ITEM_S: Final = 1.0
 GROUND_S: Final = 5.0
 """From the motors' start to the lift-off, and from the ground to the motors' stop: 3.5 and 4.5 s of
 the recorded PX4, 3.5 and 1 s of the ArduCopter."""
+PAYLOAD_S: Final = 5.0
+"""A PX4 waits so long for its gripper or winch (MIS_PD_TO as delivered)."""
 LANDS_FROM_M: Final = 10.0
 """Below this the vehicle lands slowly (MPC_LAND_ALT1 and LAND_ALT_LOW_M as delivered)."""
 FASTEST_M_S: Final = 12.0
@@ -134,6 +137,8 @@ class TimeWalk:
                     return self._jump(index, item)
                 case Kind.ACT:
                     self._change_speed(item)
+                    if flown_as(item.command, self._ground.autopilot) is Flown.WAITS:
+                        self._time_s += PAYLOAD_S
                 case Kind.SET_HOME | Kind.FENCE | None:
                     return None
         except PlaceUnknownError:
@@ -141,12 +146,12 @@ class TimeWalk:
         return None if item.command in _ENDS[self._ground.autopilot] else index + 1
 
     def _jump(self, index: int, item: Item) -> int | None:
-        to, repeats, *_ = item.params
+        repeats = item.params[1]
         done = self._jumps.get(index, 0)
         if 0.0 <= repeats <= done:
             return index + 1
         self._jumps[index] = done + 1
-        target = self._plan.index_of(to)
+        target = jump_target(self._plan, item)
         if repeats < 0.0 and target is not None and target <= index:
             self._endless = index
         return target

@@ -3,7 +3,8 @@
 Sources: C8_upload_item_kinds, C9 and C11 of `scenarios_px4.json` (PX4 1.14.3) and C8, C1 and C2 of
 `scenarios_arducopter.json` (ArduCopter 4.7) for what is taken at upload and how it was flown.  What
 PX4 1.15 and ArduCopter 4.5 do was not recorded: those columns are from memory of their sources, and
-differ from the recorded ones nowhere that is known.
+differ from the recorded ones nowhere that is known.  From memory, too: that a PX4 waits for its
+gripper or winch (MIS_PD_TO), and what NAV_PAYLOAD_PLACE does.
 """
 
 from __future__ import annotations
@@ -32,6 +33,9 @@ class Flown(Enum):
     WAITS = "stays where it is"
     JUMPS = "goes on elsewhere in the mission"
     NO_MOVE = "does not move"
+    DESCENDS = (
+        "descends by itself until it feels the ground: refused here, as nobody knows the height"
+    )
     MOVES_HOME = "moves home: refused here, as return, heights and fence move too"
     SWITCHES_FENCE = "switches the vehicle's own fence"
     FENCE_PART = "is no mission item: a fence or rally points"
@@ -78,8 +82,17 @@ ROWS: tuple[Row, ...] = (
     _both(Cmd.CONDITION_DISTANCE, _F.NEVER_STARTS, _F.NO_MOVE),
     _both(Cmd.CONDITION_YAW, _F.REFUSED, _F.NO_MOVE),
     _all(Cmd.DO_JUMP, _F.JUMPS),
+    _both(Cmd.JUMP_TAG, _F.REFUSED, _F.NO_MOVE),
+    _both(Cmd.DO_JUMP_TAG, _F.REFUSED, _F.JUMPS),
     _all(Cmd.DO_CHANGE_SPEED, _F.NO_MOVE),
     _all(Cmd.DO_SET_HOME, _F.MOVES_HOME),
+    _both(Cmd.DO_SET_RELAY, _F.REFUSED, _F.NO_MOVE),
+    _both(Cmd.DO_REPEAT_RELAY, _F.REFUSED, _F.NO_MOVE),
+    _both(Cmd.DO_SET_SERVO, _F.REFUSED, _F.NO_MOVE),
+    _both(Cmd.DO_REPEAT_SERVO, _F.REFUSED, _F.NO_MOVE),
+    _both(Cmd.DO_GRIPPER, _F.WAITS, _F.NO_MOVE),
+    _both(Cmd.DO_WINCH, _F.WAITS, _F.NO_MOVE),
+    _both(Cmd.NAV_PAYLOAD_PLACE, _F.REFUSED, _F.DESCENDS),
     _all(Cmd.DO_LAND_START, _F.NO_MOVE),
     _all(Cmd.DO_SET_ROI_LOCATION, _F.NO_MOVE),
     _all(Cmd.DO_SET_ROI_NONE, _F.NO_MOVE),

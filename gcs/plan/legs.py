@@ -48,6 +48,7 @@ class ProblemKind(Enum):
     NO_RETURN_HEIGHT = "the vehicle's return height is not known"
     RETURN_ROUTE = "the vehicle's return follows its mission (RTL_TYPE), which is not verified"
     HOME_MOVES = "it moves home, and with it the return, later heights and the fence"
+    OWN_DESCENT = "it descends by itself until it feels the ground, to a height that is not known"
     NOT_FLOWN = "it is no item that is verified here"
     REFUSED = "this autopilot refuses it at upload"
     NEVER_STARTS = "this autopilot stores it, and then does not start the mission"

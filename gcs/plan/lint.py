@@ -14,6 +14,7 @@ from gcs.plan.commands import FLOWN, KINDS, Kind, item_label
 from gcs.plan.errors import Finding, Level
 from gcs.plan.feasibility import never_starts
 from gcs.plan.items import Flown, flown_as
+from gcs.plan.legs import ProblemKind
 from gcs.plan.lint_fence import lint_fence
 from gcs.plan.lint_jumps import lint_jumps
 from gcs.plan.model import AutopilotName, Frame, Geodetic, Geographic, Item, Local, Plan
@@ -90,7 +91,9 @@ def _whole_mission(plan: Plan, autopilot: AutopilotName | None) -> Iterator[Find
         yield Finding(Level.WARNING, item.where, item_label(index, item.command), what, index=index)
     yield from _ends_before_the_last(plan, autopilot)
     ids = [item.do_jump_id for item in plan.items]
-    if ids != list(range(1, len(ids) + 1)) and any(kind is Kind.JUMP for kind in kinds):
+    if ids != list(range(1, len(ids) + 1)) and any(
+        item.command == Cmd.DO_JUMP for item in plan.items
+    ):
         what = "do not count 1, 2, 3 ...; jumps go to the id, not to the position"
         yield Finding(Level.NOTE, "", "doJumpIds", what)
 
@@ -131,7 +134,10 @@ def _one_item(
 
     kind = KINDS.get(item.command)
     if kind is None:
-        yield finding(Level.ERROR, "it is no item that is verified here")
+        why = ProblemKind.NOT_FLOWN
+        if item.command == Cmd.NAV_PAYLOAD_PLACE:
+            why = ProblemKind.OWN_DESCENT
+        yield finding(Level.ERROR, why.value)
     elif kind is Kind.SET_HOME:
         yield finding(Level.WARNING, "moves home in mid-flight, so that later heights move too")
     elif item.command == Cmd.DO_FENCE_ENABLE and item.params[0] != 1.0:

@@ -1,31 +1,51 @@
-"""Mistakes in DO_JUMP items."""
+"""Mistakes in DO_JUMP, JUMP_TAG and DO_JUMP_TAG items."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gcs.plan.commands import FLOWN, KINDS
+from gcs.plan.commands import FLOWN, KINDS, Kind, item_label
 from gcs.plan.errors import Finding, Level
+from gcs.plan.jumps import jump_target, tagged
 from gcs.plan.model import Item, Plan
 from gcs.wire.ids import Cmd
+
+_TAG_MAX = 65535
+"""An ArduCopter keeps a tag in 16 bits: 70000 comes back as 4464, 1.6 as 1 (seen of one)."""
 
 
 def lint_jumps(plan: Plan) -> Iterator[Finding]:
     """Jumps to items that are not there or to themselves, loops without a waypoint, loops without
-    an end."""
+    an end; tags that are none, or that two items have."""
     for index, item in enumerate(plan.items):
-        if item.command == Cmd.DO_JUMP:
+        if KINDS.get(item.command) is Kind.JUMP:
             yield from _lint_jump(plan, index, item)
+        elif item.command == Cmd.JUMP_TAG:
+            yield from _lint_tag(plan, index, item)
+
+
+def _lint_tag(plan: Plan, index: int, item: Item) -> Iterator[Finding]:
+    tag, label = item.params[0], item_label(index, item.command)
+    first = tagged(plan, tag)
+    if not (0 <= tag <= _TAG_MAX and tag == tag // 1):
+        hint = f"a whole number from 0 to {_TAG_MAX}"
+        yield Finding(Level.ERROR, item.where, label, f"its tag is {tag:g}", hint, index)
+    elif first is not None and first != index:
+        what = f"its tag {tag:g} is that of item {first + 1} too"
+        yield Finding(Level.ERROR, item.where, label, what, "a tag names one item", index)
 
 
 def _lint_jump(plan: Plan, index: int, item: Item) -> Iterator[Finding]:
-    label = f"item {index + 1} (DO_JUMP)"
+    label = item_label(index, item.command)
     to, repeats = item.params[0], item.params[1]
 
     def finding(level: Level, what: str, hint: str = "") -> Finding:
         return Finding(level, item.where, label, what, hint, index)
 
-    target = plan.index_of(to)
+    target = jump_target(plan, item)
+    if target is None and item.command == Cmd.DO_JUMP_TAG:
+        yield finding(Level.ERROR, f"jumps to tag {to:g}, which no JUMP_TAG has")
+        return
     if target is None:
         ids = [other.do_jump_id for other in plan.items]
         before = "before the start" if to < min(ids) else "not there"

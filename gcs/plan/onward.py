@@ -9,8 +9,8 @@ from gcs.plan.commands import KINDS, Kind
 from gcs.plan.curves import Onward
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError
 from gcs.plan.items import Flown, flown_as
+from gcs.plan.jumps import jump_target
 from gcs.plan.model import AutopilotName, Plan
-from gcs.wire.ids import Cmd
 
 _THROUGH = (Flown.STRAIGHT, Flown.STAYS, Flown.CURVE)
 
@@ -37,7 +37,7 @@ def ways_on(
                     found.append(Onward(places.place(item, pos_ned), flown is Flown.CURVE))
             continue
         waiting.append(at + 1)
-        target = plan.index_of(item.params[0]) if item.command == Cmd.DO_JUMP else None
+        target = jump_target(plan, item) if KINDS.get(item.command) is Kind.JUMP else None
         if target is not None:
             waiting.append(target)
     after = plan.items[index + 1] if index + 1 < len(plan.items) else None

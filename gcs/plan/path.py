@@ -1,6 +1,6 @@
 """The path that a plan flies: its legs and circles, and the regions beside them.
 
-Geometry only: the gate decides what may be flown.  Every way through the DO_JUMPs is walked, so
+Geometry only: the gate decides what may be flown.  Every way through the jumps is walked, so
 the legs are those of the whole mission, each once.  How each item is flown is in `items.py`, by
 autopilot; this follows PX4's navigator and ArduCopter's AUTO mode:
 
@@ -31,6 +31,7 @@ from gcs.plan.curves import Neighbours, pieces, splines
 from gcs.plan.feasibility import never_starts
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
+from gcs.plan.jumps import jump_target
 from gcs.plan.legs import (
     FlightPath,
     Ground,
@@ -53,6 +54,7 @@ _UNFLYABLE: dict[Flown | None, ProblemKind] = {
     Flown.MOVES_HOME: ProblemKind.HOME_MOVES,
     Flown.FENCE_PART: ProblemKind.NOT_OF_A_MISSION,
     Flown.REFUSED: ProblemKind.REFUSED,
+    Flown.DESCENDS: ProblemKind.OWN_DESCENT,
 }
 _CURVE_BESIDE_M = 1.5
 """So far beside a curve the vehicle may be: 1.0 to 1.5 m were recorded of ArduCopter 4.7 (2.0 with
@@ -232,7 +234,7 @@ class PathWalk:
         """The jump is a branch of its own; going on after it is always possible too."""
         if item.params[1] == 0.0:
             return
-        target = self._plan.index_of(item.params[0])
+        target = jump_target(self._plan, item)
         if target is None:
             raise self._problem(index, ProblemKind.JUMP_NOWHERE)
         self._branches.append((target, here, self._speed_m_s))

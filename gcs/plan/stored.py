@@ -76,10 +76,18 @@ _ARDUPILOT: dict[int, Params] = {
     Cmd.DO_JUMP: (_W, _W, _N, _N),
     Cmd.DO_CHANGE_SPEED: (_W, _W, _N, _N),
     Cmd.DO_SET_HOME: (_W, _N, _N, _N),
+    Cmd.DO_SET_RELAY: (_W, _W, _N, _N),
+    Cmd.DO_REPEAT_RELAY: (_W, _W, _W, _N),
+    Cmd.DO_SET_SERVO: (_W, _W, _N, _N),
     Cmd.DO_SET_CAM_TRIGG_DIST: (_W, _N, _W, _N),
+    Cmd.DO_GRIPPER: (_W, _W, _N, _N),
+    Cmd.JUMP_TAG: (_W, _N, _N, _N),
+    Cmd.DO_JUMP_TAG: (_W, _W, _N, _N),
     Cmd.IMAGE_START_CAPTURE: (_N, _W, _W, _N),
 }
-"""As recorded: NAV_LOITER_TIME's radius as 1 or -1, NAV_LAND's fourth parameter as 1."""
+"""As recorded: NAV_LOITER_TIME's radius as 1 or -1, NAV_LAND's fourth parameter as 1.
+Those of relays, servos, grippers and tags were asked of the same ArduCopter with other values than
+C8 has; DO_REPEAT_SERVO and DO_WINCH keep all four."""
 
 _KEPT: dict[AutopilotName, dict[int, Params]] = {"px4": _PX4, "ardupilot": _ARDUPILOT}
 

@@ -1,7 +1,11 @@
 """Plan <-> the items of the MAVLink mission protocol (MISSION_ITEM_INT, field by field).
 
 px4 counts the plan's items from 0.  ardupilot has home at index 0, so the plan begins at 1.
-DO_JUMP names a do_jump_id in a `Plan` and a seq on the wire.
+DO_JUMP names a do_jump_id in a `Plan` and a seq on the wire; a tag is the same in both.
+
+Files give items without a place any frame (Mission Planner and MAVProxy: 3).  PX4 1.14.3 takes them
+in frame 2 alone and answers UNSUPPORTED to all other frames (seen of a return, of DO_LAND_START and
+of 15 more commands; `behaviour.json` has the return).  So px4 is sent frame 2.
 """
 
 from __future__ import annotations
@@ -12,7 +16,9 @@ from typing import NamedTuple
 
 from gcs.plan import commands
 from gcs.plan.build import item_from_numbers
+from gcs.plan.commands import KINDS, Kind
 from gcs.plan.errors import PlanError
+from gcs.plan.jumps import jump_target
 from gcs.plan.model import (
     AutopilotName,
     Frame,
@@ -21,6 +27,7 @@ from gcs.plan.model import (
     Item,
     Local,
     Params,
+    Plain,
     Plan,
 )
 from gcs.wire.ids import Cmd, MavFrame, MissionType
@@ -32,6 +39,8 @@ _WIRE_FRAME = {
     Frame.MISSION: MavFrame.MISSION,
 }
 _SCALE = 1e7
+_PLACE_IGNORED = frozenset({Cmd.NAV_RETURN_TO_LAUNCH, Cmd.DO_LAND_START})
+"""px4 makes nothing of parameters 5 to 7 of these, whatever a file says: they are sent as 0."""
 
 
 class WireItem(NamedTuple):
@@ -99,11 +108,12 @@ def _to_wire(plan: Plan, index: int, item: Item, autopilot: AutopilotName, seq: 
     if isinstance(item.place, Local):
         raise refused("is in metres from the take-off point", "it must be placed on Earth first")
     params = item.params
-    if item.command == Cmd.DO_JUMP:
-        target = plan.index_of(params[0])
+    if KINDS.get(item.command) is Kind.JUMP:
+        target = jump_target(plan, item)
         if target is None:
             raise refused(f"jumps to {params[0]:g}, which is no item")
-        params = (float(target + seq - index), *params[1:])
+        if item.command == Cmd.DO_JUMP:
+            params = (float(target + seq - index), *params[1:])
     x, y, z = item.place
     if autopilot == "ardupilot":
         if isinstance(item.place, Geographic) and math.isnan(z):
@@ -111,9 +121,15 @@ def _to_wire(plan: Plan, index: int, item: Item, autopilot: AutopilotName, seq: 
         params = _without_nan(params)
         z = 0.0 if math.isnan(z) else z
     scale = _SCALE if isinstance(item.place, Geographic) else 1.0
+    frame = item.frame
+    if autopilot == "px4":
+        if item.command in _PLACE_IGNORED:
+            x, y, z, frame = 0.0, 0.0, 0.0, Frame.MISSION
+        elif isinstance(item.place, Plain):
+            frame = Frame.MISSION
     return WireItem(
         seq=seq,
-        frame=_WIRE_FRAME[item.frame],
+        frame=_WIRE_FRAME[frame],
         command=item.command,
         current=int(index == 0),
         autocontinue=int(item.autocontinue),

@@ -7,7 +7,8 @@
 In an upload the vehicle asks and we answer, as often and in whatever order it asks; so a lost
 item is asked for again, and a duplicate does no harm.  An ACCEPTED before every item was asked for
 belongs to an earlier transfer and is not believed.  INVALID_SEQUENCE is about a duplicate.  Any
-other result ends the transfer.
+other result ends the transfer.  While only the last answer is missing, the item that was given last
+is sent again and again, and whatever item is asked for again shows that the vehicle is at work.
 """
 
 from __future__ import annotations
@@ -54,6 +55,7 @@ class MissionUpload(Transfer):
         timing: Timing = SPEC_TIMING,
     ) -> None:
         super().__init__(Parties(own, target, mission_type), timing)
+        self._timing = timing
         self._items = tuple(
             msgspec.structs.replace(
                 item,
@@ -68,6 +70,8 @@ class MissionUpload(Transfer):
         """Items 0 up to this one were asked for."""
         self._given = 0
         """The item that was given last."""
+        self._confirm_until_ns: int | None = None
+        """Until then a question for an item that was given is progress, once all were given."""
 
     @property
     def all_given(self) -> bool:
@@ -118,9 +122,17 @@ class MissionUpload(Transfer):
         sent = self._pending.put_item(Send(self._items[seq]), now_ns)
         self._given = seq
         if seq < self._asked:
-            return sent
+            return [*sent, *self._at_work(now_ns)]
         self._asked = seq + 1
+        if self.all_given:
+            self._confirm_until_ns = now_ns + self._timing.confirm_ns
         return [*sent, TransferProgress(self._asked, len(self._items))]
+
+    def _at_work(self, now_ns: int) -> list[TransferEffect]:
+        """An item was asked for again.  One that never comes through is no progress."""
+        if self._confirm_until_ns is None or now_ns >= self._confirm_until_ns:
+            return []
+        return [TransferProgress(self._asked, len(self._items))]
 
     def _not_that_one(self, now_ns: int) -> list[TransferEffect]:
         """ArduPilot answers an item that it has already with INVALID_SEQUENCE, and asks once a

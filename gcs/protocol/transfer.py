@@ -43,12 +43,16 @@ class Timing:
     a bridge whose links both lose a quarter one of three tries comes through: of 500 items one was
     nearly always asked for in vain for 15 s.  How long a whole transfer may take is its owner's to
     say.
+
+    A bridge answers the last item only when the plan is on board of its vehicle and read back, and
+    asks for items again meanwhile.  For `confirm_ns` that counts as progress.
     """
 
     wait_ns: int = 1_500_000_000
     item_wait_ns: int = 250_000_000
     retries: int = 5
     silence_ns: int = 15_000_000_000
+    confirm_ns: int = 300_000_000_000
 
     @property
     def item_silence_ns(self) -> int:

@@ -40,6 +40,7 @@ from gcs.session.jobs.start import Start
 from gcs.session.jobs.starting import first_item
 from gcs.session.jobs.upload import Upload
 from gcs.session.mission_current import MissionTold
+from gcs.session.paths import is_placed
 from gcs.session.plans import OnBoard
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
@@ -74,6 +75,7 @@ def timing_of(times: Times) -> Timing:
         times.real_ns(SPEC_TIMING.wait_ns),
         times.real_ns(SPEC_TIMING.item_wait_ns),
         silence_ns=times.real_ns(SPEC_TIMING.silence_ns),
+        confirm_ns=times.real_ns(SPEC_TIMING.confirm_ns),
     )
 
 
@@ -213,7 +215,8 @@ class Missions:
             return Refusal(Code.BAD_MISSION, "which file?")
         of_mission = kind in (MissionType.MISSION, MissionType.ALL)
         if ask.word in ("mission_upload", "mission_clear") and of_mission:
-            if state is State.STALE:
+            starting = ask.word == "mission_upload" and telemetry and not is_placed(telemetry)
+            if state is State.STALE and not starting:  # else the job waits for it
                 return Refusal(Code.STALE, "the vehicle's position is too old")
             if state is State.FLYING_MISSION or flown_by_mode(telemetry):
                 return Refusal(Code.BUSY, "the mission on board is being flown")

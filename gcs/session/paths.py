@@ -26,6 +26,12 @@ def autopilot_name(telemetry: Telemetry) -> AutopilotName:
     return name
 
 
+def is_placed(telemetry: Telemetry) -> bool:
+    """Whether it is known where the vehicle's local frame and its home are on Earth."""
+    known = (telemetry.origin, telemetry.home, telemetry.home_ned)
+    return all(each is not None for each in known)
+
+
 def on_earth(plan: Plan, telemetry: Telemetry) -> Plan | Refusal:
     """Items in metres from the take-off point become items above home, by its own projection."""
     if telemetry.origin is None or telemetry.home is None or telemetry.home_ned is None:

@@ -124,7 +124,7 @@ class AutopilotRules:
     terrain_items: bool  # heights above terrain are stored; without its data they are not flown
     payload_item_lasts: str | None  # the parameter with how long DO_GRIPPER and DO_WINCH last [s]
     items_need_sound_place: bool  # an altitude that is no number, or no place on Earth, is refused
-    return_refuses_place: bool  # a RETURN_TO_LAUNCH in a global frame is refused
+    placeless_in_mission_frame: bool  # items without a place are refused in all other frames
     jumps_may_lead_beyond: bool  # DO_JUMP to an item that is not there is stored
 
     # Take-off, landing, disarming.
@@ -256,7 +256,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         terrain_items=False,
         payload_item_lasts="MIS_PD_TO",
         items_need_sound_place=False,
-        return_refuses_place=True,
+        placeless_in_mission_frame=True,
         jumps_may_lead_beyond=True,
         # Take-off, landing, disarming.
         lifts_off_at_once=True,
@@ -383,7 +383,7 @@ RULES: Final[dict[Personality, AutopilotRules]] = {
         terrain_items=True,
         payload_item_lasts=None,
         items_need_sound_place=True,
-        return_refuses_place=False,
+        placeless_in_mission_frame=False,
         jumps_may_lead_beyond=False,
         # Take-off, landing, disarming.
         lifts_off_at_once=False,

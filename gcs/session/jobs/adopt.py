@@ -30,6 +30,9 @@ SMALL_ITEMS = 50
 class Adopt(PreparedJob, StartingJob):
     """The mission on board, read and verified; then the gate decides on its start."""
 
+    waits_for_home = False
+    """Nothing is started half a minute after it was asked for."""
+
     def __init__(self, asked: Asked) -> None:
         super().__init__(asked, SOURCE)
         self._received: tuple[WireItem, ...] = ()

@@ -4,26 +4,38 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from typing import ClassVar
 
 from gcs.gate.effects import Level
-from gcs.gate.refusal import Refusal
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import State
 from gcs.plan.errors import PlanError
 from gcs.plan.verify import Verification
 from gcs.session.jobs.job import NODE, Asked, JobWork, VehicleView
 from gcs.session.jobs.verified import VerifiedJob
+from gcs.session.paths import is_placed
 from gcs.session.plans import Prepared
 from gcs.session.work import Log
 from gcs.steps import Steps
 
 MOST_FINDINGS = 20
 """Findings of one mission that are told one by one."""
+PLACED_WITHIN_NS = 30_000_000_000
+"""So long the vehicle's origin and home are waited for: on a link that loses frames each may have
+to be asked for some times, every two seconds."""
+LOOK_AGAIN_NS = 100_000_000
 
 
 class PreparedJob(VerifiedJob):
     """`prepare_with`, then what shapes the flight is learnt and the path verified: `verified`.
 
+    Where the vehicle's origin or home is not known yet, they are waited for first: no plan can be
+    placed without them, whoever asks for it.
+
     `source` is what the log calls the plan.
     """
+
+    waits_for_home: ClassVar[bool] = True
 
     def __init__(self, asked: Asked, source: str) -> None:
         super().__init__(asked)
@@ -31,6 +43,8 @@ class PreparedJob(VerifiedJob):
         self._preparing: Steps[Prepared | Refusal] | None = None
         self._at_once = True
         self._prepare_ns = 0
+        self._placed_by_ns = 0
+        """Until then the origin and home are waited for; 0: they are not."""
         self._prepared_plan: Prepared | None = None
 
     @abstractmethod
@@ -53,7 +67,12 @@ class PreparedJob(VerifiedJob):
     ) -> list[JobWork]:
         """Go through `steps`, all in one turn or one between two ticks."""
         self._preparing, self._at_once = steps, at_once
-        return self._prepare_on(view, now_ns)
+        if is_placed(view.telemetry) or not self.waits_for_home:
+            return self._prepare_on(view, now_ns)
+        self._placed_by_ns = now_ns + self.asked.times.real_ns(PLACED_WITHIN_NS)
+        waits = "waiting for the vehicle's origin and home"
+        log = Log(Level.INFO, NODE, f"{self.source}: {waits}")
+        return [log, *self._prepare_on(view, now_ns)]
 
     @property
     def deadline_ns(self) -> int | None:
@@ -67,6 +86,14 @@ class PreparedJob(VerifiedJob):
     def _prepare_on(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         """A step more on the way to a plan that can be verified, or to why not."""
         assert self._preparing is not None
+        if self._placed_by_ns:
+            stale = view.state is State.STALE
+            if now_ns < self._placed_by_ns and (stale or not is_placed(view.telemetry)):
+                self._prepare_ns = now_ns + self.asked.times.real_ns(LOOK_AGAIN_NS)
+                return []
+            self._placed_by_ns = 0
+            if stale:
+                return self.refuse(Refusal(Code.STALE, "the vehicle's position is too old"))
         self._prepare_ns = self.after_pause_ns(now_ns)
         try:
             next(self._preparing)

@@ -43,6 +43,12 @@ def differences(autopilot: AutopilotName, sent: WireItem, back: WireItem) -> lis
         ("ardupilot", item(21, 0, 0, 0, 0), item(21, 0, 0, 0, 1.0, frame=3)),
         ("ardupilot", item(31, 0, 10.0, 0, 1), item(31, 0, 10.0, 0, 1.0, frame=3)),
         ("ardupilot", item(16, 2.0, 5.0, 1.0, 90), item(16, 2.0, 0, 0, 0, frame=3)),
+        ("ardupilot", item(181, 1, 1, 3, 4, frame=2), item(181, 1, 1, 0, 0, frame=0)),
+        ("ardupilot", item(182, 1, 3, 1.5, 4, frame=2), item(182, 1, 3, 1.5, 0, frame=0)),
+        ("ardupilot", item(183, 9, 1500, 3, 4, frame=2), item(183, 9, 1500, 0, 0, frame=0)),
+        ("ardupilot", item(211, 1, 1, 3, 4, frame=2), item(211, 1, 1, 0, 0, frame=0)),
+        ("ardupilot", item(600, 7, 2, 3, 4, frame=2), item(600, 7, 0, 0, 0, frame=0)),
+        ("ardupilot", item(601, 7, -1, 3, 4, frame=2), item(601, 7, -1, 0, 0, frame=0)),
     ],
 )
 def test_what_was_given_back_means_what_was_sent(
@@ -54,6 +60,18 @@ def test_what_was_given_back_means_what_was_sent(
 @pytest.mark.parametrize(
     ("autopilot", "sent", "back", "told"),
     [
+        (
+            "ardupilot",
+            item(600, 1.6, 0, 0, 0, frame=2),
+            item(600, 1.0, 0, 0, 0, frame=0),
+            "item 1 (JUMP_TAG): param1: sent 1.6, stored 1",
+        ),
+        (
+            "ardupilot",
+            item(601, 9, 40000, 0, 0, frame=2),
+            item(601, 9, -25536, 0, 0, frame=0),
+            "item 1 (DO_JUMP_TAG): param2: sent 40000, stored -25536",
+        ),
         (
             "px4",
             item(16, 0, 0, 0, 225.0),

@@ -159,6 +159,13 @@ def test_a_jump_within_a_jump_is_counted_once_for_the_whole_flight() -> None:
     assert both == pytest.approx(five)
 
 
+def test_a_jump_to_a_tag_takes_as_long_as_one_to_its_item() -> None:
+    tag = item(Cmd.JUMP_TAG, 5.0)
+    for repeats in (0.0, 3.0, -1.0):
+        by_tag = flight(BACK, tag, OUT, BACK, item(Cmd.DO_JUMP_TAG, 5.0, repeats), DOWN)
+        assert by_tag == flight(BACK, tag, OUT, BACK, item(Cmd.DO_JUMP, 2.0, repeats), DOWN)
+
+
 def test_a_jump_for_ever_is_counted_to_the_end_of_the_time_and_named() -> None:
     found = flight(BACK, OUT, BACK, item(Cmd.DO_JUMP, 2.0, -1.0), DOWN, most_s=600.0)
     assert (found.whole, found.endless) == (False, 3)

@@ -468,6 +468,16 @@ def test_every_known_command_has_one_row() -> None:
         (Cmd.DO_LAND_START, True, True),
         (Cmd.DO_SET_HOME, True, True),
         (Cmd.CONDITION_DISTANCE, True, True),
+        (Cmd.DO_JUMP, True, True),
+        (Cmd.JUMP_TAG, False, True),
+        (Cmd.DO_JUMP_TAG, False, True),
+        (Cmd.DO_SET_RELAY, False, True),
+        (Cmd.DO_REPEAT_RELAY, False, True),
+        (Cmd.DO_SET_SERVO, False, True),
+        (Cmd.DO_REPEAT_SERVO, False, True),
+        (Cmd.DO_GRIPPER, True, True),
+        (Cmd.DO_WINCH, True, True),
+        (Cmd.NAV_PAYLOAD_PLACE, False, True),
     ],
 )
 def test_what_the_vehicles_refused_at_upload_is_in_the_table(

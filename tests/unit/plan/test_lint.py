@@ -58,6 +58,42 @@ def test_bad_jumps(jump: list[float | None], words: str) -> None:
     assert words in found.what
 
 
+@pytest.mark.parametrize(
+    ("tags", "jump", "index", "words"),
+    [
+        ([7], [9, 1], 3, "jumps to tag 9, which no JUMP_TAG has"),
+        ([1.5], [1.5, 1], 2, "its tag is 1.5"),
+        ([70000], [70000, 1], 2, "its tag is 70000"),
+        ([7], [7, 1.5], 3, "repeat count"),
+        ([7, 7], [7, 1], 3, "its tag 7 is that of item 3 too"),
+    ],
+)
+def test_bad_tags(tags: list[float], jump: list[float | None], index: int, words: str) -> None:
+    marks = [simple(3, 600, 2, [tag, 0, 0, 0, 0, 0, 0]) for tag in tags]
+    again = simple(9, 601, 2, [*jump, 0, 0, 0, 0, 0])
+    found = findings(*in_order(TAKEOFF, AWAY, *marks, AWAY, again), who="ardupilot")
+    (error,) = [each for each in found if each.level is Level.ERROR]
+    assert words in error.what
+    assert error.index == index + (words[:5] in ("jumps", "repea"))
+
+
+def test_a_loop_to_a_tag_without_a_waypoint() -> None:
+    marks, again = (
+        simple(3, 600, 2, [7, 0, 0, 0, 0, 0, 0]),
+        simple(4, 601, 2, [7, 5, 0, 0, 0, 0, 0]),
+    )
+    found = findings(*in_order(TAKEOFF, AWAY, marks, again), who="ardupilot")
+    assert "without a waypoint" in only([f for f in found if f.level is Level.ERROR]).what
+
+
+def test_a_load_that_is_put_down_is_refused_with_its_reason() -> None:
+    put_down = waypoint(3, 47.39785, 8.5456, 10, command=94)
+    found = findings(TAKEOFF, AWAY, put_down, who="ardupilot")
+    (error,) = [each for each in found if each.level is Level.ERROR]
+    assert error.item == "item 3 (NAV_PAYLOAD_PLACE)"
+    assert "descends by itself until it feels the ground" in error.what
+
+
 def test_a_loop_without_a_waypoint() -> None:
     found = findings(
         TAKEOFF,

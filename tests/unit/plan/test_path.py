@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -26,6 +27,7 @@ GROUND = Ground(
 COPTER = replace(GROUND, autopilot="ardupilot")
 """PX4 refuses LOITER_TURNS and splines at upload (scenario C8_upload_item_kinds)."""
 NOTHING = (0.0, 0.0, 0.0, 0.0)
+CIRCLE = (2.0, 0.0, 4.0, 0.0)
 
 
 def at(
@@ -37,6 +39,14 @@ def at(
 
 def jump(to: int, repeats: float = 1.0) -> Item:
     return replace(at(0, 0, 0), command=177, frame=Frame.MISSION, params=(to, repeats, 0.0, 0.0))
+
+
+def tag(number: float) -> Item:
+    return replace(jump(0), command=600, params=(number, 0.0, 0.0, 0.0))
+
+
+def to_tag(number: float, repeats: float = 1.0) -> Item:
+    return replace(jump(0), command=601, params=(number, repeats, 0.0, 0.0))
 
 
 def path(*items: Item, ground: Ground = GROUND) -> FlightPath:
@@ -159,6 +169,31 @@ def geographic(frame: Frame, place: Geographic, command: int = 16) -> Item:
     return Item(command, frame, NOTHING, place, 1)
 
 
+def test_a_jump_to_a_tag_is_flown_as_a_jump_to_the_item_that_has_it() -> None:
+    """Behind, ahead, from a spline, and never: each leg, region and circle is the same."""
+    first, second, last = at(10, 0, 5), at(10, 10, 8, 82), at(0, 10, 5)
+    ways: list[Callable[[Item], tuple[Item, ...]]] = [
+        lambda jump: (at(0, 0, 5, 22), tag(7), first, second, jump, last),
+        lambda jump: (at(0, 0, 5, 22), first, jump, second, tag(7), last),
+        lambda jump: (at(0, 0, 5, 22), tag(3), first, tag(7), at(5, 5, 5, 18, CIRCLE), jump),
+    ]
+    for way, index in zip(ways, (2, 5, 4), strict=True):
+        for repeats in (-1.0, 0.0, 3.0):
+            by_tag = path(*way(to_tag(7, repeats)), ground=COPTER)
+            by_item = path(*way(jump(index, repeats)), ground=COPTER)
+            assert by_tag == by_item
+            assert by_tag.problems == ()
+
+
+def test_what_moves_nothing_of_the_vehicle_is_no_leg() -> None:
+    plain = path(at(0, 0, 5, 22), at(10, 0, 5), at(10, 10, 8), ground=COPTER)
+    for command in (181, 182, 183, 184, 211, 600, 42600):
+        item = replace(jump(0), command=command)
+        flown = path(at(0, 0, 5, 22), at(10, 0, 5), item, at(10, 10, 8), ground=COPTER)
+        assert flown.problems == ()
+        assert [leg.to_ned for leg in flown.legs] == [leg.to_ned for leg in plain.legs]
+
+
 @pytest.mark.parametrize(
     ("item", "ground", "kind"),
     [
@@ -183,6 +218,10 @@ def geographic(frame: Frame, place: Geographic, command: int = 16) -> Item:
         (at(1, 0, 5, 5001), GROUND, ProblemKind.NOT_OF_A_MISSION),
         (at(1, 0, 5, 179), GROUND, ProblemKind.HOME_MOVES),
         (jump(9), GROUND, ProblemKind.JUMP_NOWHERE),
+        (to_tag(9), COPTER, ProblemKind.JUMP_NOWHERE),
+        (to_tag(9), GROUND, ProblemKind.REFUSED),
+        (at(1, 0, 5, 183), GROUND, ProblemKind.REFUSED),
+        (at(1, 0, 5, 94), COPTER, ProblemKind.OWN_DESCENT),
         (at(1, 0, 5, 20), replace(GROUND, return_up_m=None), ProblemKind.NO_RETURN_HEIGHT),
     ],
 )

@@ -60,6 +60,20 @@ def test_a_jump_to_nowhere_does_not_leave() -> None:
         to_wire(plan, "px4")
 
 
+def test_a_tag_is_the_same_on_the_wire() -> None:
+    tag, jump = simple(2, 600, 2, [7, 0, 0, 0, 0, 0, 0]), simple(3, 601, 2, [7, 2, 0, 0, 0, 0, 0])
+    plan = read_json(plan_document(waypoint(1, 47.39775, 8.5456, 10, command=22), tag, jump))
+
+    items = to_wire(plan, "ardupilot")
+
+    assert [(each.command, each.param1) for each in items[2:]] == [(600, 7.0), (601, 7.0)]
+    assert [each.params for each in from_wire(items, "ardupilot").items[1:]] == [
+        each.params for each in plan.items[1:]
+    ]
+    with pytest.raises(PlanError, match="no item"):
+        to_wire(read_json(plan_document(jump)), "ardupilot")
+
+
 def test_a_height_that_is_not_set_goes_to_px4_alone() -> None:
     document = box()
     document["mission"]["items"][0]["params"][6] = None
@@ -68,6 +82,33 @@ def test_a_height_that_is_not_set_goes_to_px4_alone() -> None:
     assert math.isnan(to_wire(plan, "px4")[0].z)
     with pytest.raises(PlanError, match="altitude"):
         to_wire(plan, "ardupilot")
+
+
+@pytest.mark.parametrize("frame", [0, 2, 3, 10])
+def test_px4_is_sent_no_frame_with_a_place_for_what_has_none(frame: int) -> None:
+    """It answers UNSUPPORTED to a return in frames 0, 3 and 6, and so to all that has no place (PX4
+    1.14.3).  What is to be a place of a return or of DO_LAND_START means nothing to it."""
+    plan = read_json(
+        plan_document(
+            simple(1, 20, frame, [0, 0, 0, 0, 47.39775, 8.5456, 10]),
+            simple(2, 189, frame, [0, 0, 0, 0, 47.39775, 8.5456, 10]),
+            simple(3, 178, frame, [1, 5, -1, 0, 0, 0, 0]),
+            simple(4, 203, frame, [0, 0, 0, 0, 1, 2, 3]),
+            simple(5, 177, frame, [1, 2, 0, 0, 0, 0, 0]),
+        )
+    )
+    returns, lands, speed, photo, jump = to_wire(plan, "px4")
+    assert {each.frame for each in (returns, lands, speed, photo, jump)} == {2}
+    assert returns[9:12] == lands[9:12] == (0, 0, 0.0)
+    assert (photo.x, photo.y, photo.z) == (1, 2, 3.0)
+    assert jump.param1 == 0.0
+
+
+def test_a_return_from_a_file_in_frame_3_is_stored_by_a_px4_and_read_back_equal() -> None:
+    """real_autopilots.md 6: what a real one stores is what leaves, item for item."""
+    sent = to_wire(read_json(plan_document(simple(1, 20, 3, [0, 0, 0, 0, 0, 0, 0]))), "px4")
+    stored = WireItem(0, 2, 20, 1, 1, 0.0, 0.0, 0.0, 0.0, 0, 0, 0.0)
+    assert same_meaning(sent, [stored], "px4") == []
 
 
 def test_an_empty_plan_is_no_item_not_even_home() -> None:

@@ -183,7 +183,28 @@ def test_an_item_is_sent_again_as_often_as_it_is_asked_for() -> None:
     for seq in (0, 1, 1, 0, 2, 1):
         flight.hear(request(seq))
     assert flight.sent[1:] == [THREE[seq] for seq in (0, 1, 1, 0, 2, 1)]
-    assert flight.said == [TransferProgress(n, 3) for n in (1, 2, 3)]
+    assert flight.said[:3] == [TransferProgress(n, 3) for n in (1, 2, 3)]
+
+
+def test_while_the_last_answer_is_missing_a_question_is_a_sign_of_life_for_five_minutes() -> None:
+    """A bridge brings the plan on board meanwhile, and asks for the last items again."""
+    flight = upload()
+    flight.hear(request(0))
+    flight.hear(request(0))
+    assert flight.said == [TransferProgress(1, 3)], "not while items are missing"
+    flight.hear(request(1))
+    flight.hear(request(2))
+    for _ in range(30):
+        flight.wait(10_000 * MS)
+        flight.hear(request(1))
+    assert flight.said == [
+        *(TransferProgress(n, 3) for n in (1, 2, 3)),
+        *[TransferProgress(3, 3)] * 29,
+    ]
+    flight.wait(10_000 * MS)
+    assert flight.sent[-1] == THREE[1], "and the last item is sent again by itself"
+    flight.hear(ack(MissionResult.ACCEPTED))
+    assert flight.ending == TransferDone(PLAN, THREE)
 
 
 def test_an_item_beyond_the_plan_is_not_sent() -> None:

@@ -547,13 +547,19 @@ def test_ardupilot_sends_its_home_when_it_changes_or_is_asked_for() -> None:
     assert all(part != part for part in home.q), "NaN, as the real one sends"
 
 
-def test_px4_returns_in_no_frame_with_a_place() -> None:
-    """behaviour.json rank 2: NAV_RETURN_TO_LAUNCH in frame 6 is refused; in frame 2 it flies."""
-    for frame, refused in ((6, True), (3, True), (2, False)):
+def test_px4_takes_what_has_no_place_in_no_frame_with_one() -> None:
+    """behaviour.json rank 2, and seen of a PX4 1.14.3 with all commands below: frames 0, 3 and 6
+    are refused with type 3; frame 2 is stored.  Of 201, DO_SET_ROI, it is the reverse."""
+    placeless = (20, 93, 112, 114, 177, 178, 179, 189, 197, 203, 206, 211, 530, 1000, 2000, 2001)
+    for command in (*placeless, 201):
+        parameters = (1.0, 1.0, 0.0, 0.0) if command != 201 else (3.0, 0.0, 0.0, 0.0)
+        for frame in (0, 3, 6, *((2,) if command != 201 else ())):
+            item = PlanItem(0, frame, command, *parameters, 0, 0, 0, 1)
+            stored = on_the_ground("px4").autopilot.check_plan((item,)) is None
+            assert stored is ((frame == 2) is (command != 201)), (command, frame)
+    for frame in (2, 3, 6):
         home = PlanItem(0, frame, 20, 0, 0, 0, 0, 0, 0, 0, 1)
-        assert (on_the_ground("px4").autopilot.check_plan((home,)) is not None) is refused
-        plan = (HOME_ITEM, home)
-        assert on_the_ground("ardupilot").autopilot.check_plan(plan) is None
+        assert on_the_ground("ardupilot").autopilot.check_plan((HOME_ITEM, home)) is None
 
 
 def test_ardupilots_vtol_state_is_a_multicopters() -> None:

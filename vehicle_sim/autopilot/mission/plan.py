@@ -235,13 +235,17 @@ def _why_not(item: PlanItem, count: int, personality: Personality) -> str | None
             return "the position is missing"
     elif item.frame not in frames | {_MISSION}:
         return f"frame {item.frame} is not supported"
-    elif (
-        item.command == Cmd.RETURN
-        and rules.return_refuses_place
-        and item.frame in _GLOBAL | _RELATIVE
-    ):
-        return f"frame {item.frame} is not supported for a return"
+    elif _needs_mission_frame(item, rules) and item.frame not in (_MISSION, _LOCAL_NED):
+        return f"frame {item.frame} is not supported for an item without a place"
     return _why_not_values(item, count, rules)
+
+
+def _needs_mission_frame(item: PlanItem, rules: AutopilotRules) -> bool:
+    """PX4 takes DO_SET_ROI in global frames alone, and all else that has no place in frame 2.
+
+    Frame 1 is vehicle-sim's own.
+    """
+    return rules.placeless_in_mission_frame and item.command != Cmd.ROI
 
 
 def _why_not_values(item: PlanItem, count: int, rules: AutopilotRules) -> str | None:

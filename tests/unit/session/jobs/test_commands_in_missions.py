@@ -140,7 +140,9 @@ def test_an_actuator_is_moved_by_no_mission_and_what_is_let_through_by_name_must
     script = upload(servo, autopilot=ARDUPILOT)
     assert script.refused is Code.POLICY
     assert "past the controllers" in script.sentence
-    script = upload(servo, autopilot=ARDUPILOT, bridge='extra_harmless = ["DO_SET_SERVO"]')
+    let_through = 'extra_harmless = ["DO_SET_SERVO", "DO_PARACHUTE"]'
+    assert upload(servo, autopilot=ARDUPILOT, bridge=let_through).accepted
+    script = upload(does(Cmd.DO_PARACHUTE), autopilot=ARDUPILOT, bridge=let_through)
     assert script.refused is Code.BAD_MISSION
     assert "verified here" in script.sentence
 
@@ -204,6 +206,7 @@ JUDGED_BY_THE_VERIFIER = {
         "CONDITION_DELAY",
         "CONDITION_DISTANCE",
         "DO_JUMP",
+        "JUMP_TAG",
     },
 }
 """Refused as commands, because they mean something in a mission only, or because the gate has
@@ -239,6 +242,15 @@ def test_no_command_that_is_refused_by_default_rides_in_a_mission(autopilot: Aut
     assert "NAV_LOITER_UNLIM" in carried
     unnoticed = {name for name, kind in carried.items() if kind in refused}
     assert unnoticed == JUDGED_BY_THE_VERIFIER[autopilot.name]
+
+
+def test_a_client_s_jump_to_a_tag_rides_where_the_tag_is() -> None:
+    """As DO_JUMP does; to no tag it does not."""
+    tag, jump = does(Cmd.JUMP_TAG, 7.0), does(Cmd.DO_JUMP_TAG, 7.0)
+    assert upload(tag, place(Cmd.NAV_WAYPOINT, 15.0), jump, autopilot=ARDUPILOT).accepted
+    script = upload(place(Cmd.NAV_WAYPOINT, 15.0), jump, autopilot=ARDUPILOT)
+    assert script.refused is Code.BAD_MISSION
+    assert "jumps to tag 7, which no JUMP_TAG has" in script.sentence
 
 
 @BOTH

@@ -12,6 +12,7 @@ from gcs import ipc
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code
+from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT
 from gcs.protocol.effects import Send
 from gcs.session.effects import ReadFile
@@ -267,7 +268,29 @@ def test_two_thousand_items_are_verified_in_steps() -> None:
 def test_without_origin_and_home_nothing_can_be_verified() -> None:
     telemetry = placed()
     telemetry.origin = None
-    assert upload(telemetry=telemetry).read(BOX).refused is Code.NO_ORIGIN
+    script = upload(telemetry=telemetry).read(BOX).run(29.9)
+    assert not script.job.over
+    assert script.run(0.3).refused is Code.NO_ORIGIN
+
+
+def test_the_origin_is_waited_for_before_the_plan_is_placed() -> None:
+    """Who asks does not matter: a line of `gcs fly --plain` and Python wait here too."""
+    telemetry = placed()
+    origin, telemetry.origin = telemetry.origin, None
+    script = upload(telemetry=telemetry).read(BOX).run(20.0)
+    assert not script.job.over
+    assert [log.text for log in script.of(Log)] == [
+        "a.plan: waiting for the vehicle's origin and home"
+    ]
+    telemetry.origin = origin
+    assert script.run(5.0).outcome == COMPLETE
+
+
+def test_a_position_that_is_not_there_by_then_is_told_as_that() -> None:
+    telemetry = placed()
+    telemetry.home = None
+    script = JobScript(Upload(asked("mission_upload"), "a.plan"), Board(), telemetry, State.STALE)
+    assert script.read(BOX).run(31.0).refused is Code.STALE
 
 
 def test_a_path_does_not_begin_at_a_position_that_is_too_old() -> None:
