@@ -26,9 +26,8 @@ ATTITUDE = frame_of(mavlink.MAVLink_attitude_message(1, 0, 0, 0, 0, 0, 0), 1, 1)
 POSITION = frame_of(mavlink.MAVLink_local_position_ned_message(1, 0, 0, 0, 0, 0, 0), 1, 1)
 
 
-def command(command: Cmd, *params: float) -> CommandLong:
-    rest = (0.0,) * (7 - len(params))
-    return CommandLong(*params, *rest, command, 1, 1, 0)
+def command(command: Cmd, param1: float, param2: float = 0.0) -> CommandLong:
+    return CommandLong(param1, param2, 0.0, 0.0, 0.0, 0.0, 0.0, command, 1, 1, 0)
 
 
 def interval(interval_us: float, msgid: float = MsgId.ATTITUDE) -> CommandLong:
