@@ -61,17 +61,20 @@ class SessionFiles:
 
 
 class Numbers:
-    """Of the messages of one file: in each channel they count on by one (or, as another library
-    writes them, are all 0), and are published when they are logged."""
+    """Of the messages of one file, a later part as well: in each channel they count from 1 on (or,
+    as another library writes them, all of the file are 0), and are published when they are
+    logged."""
 
     def __init__(self) -> None:
         self._last: dict[int, int] = {}
+        self._step: int | None = None
         self.wrong = 0
 
     def message(self, message: Message) -> None:
-        last = self._last.get(message.channel_id)
-        number = self._last[message.channel_id] = message.sequence
-        counted = last is None or number == last + 1 or number == last == 0
+        if self._step is None:
+            self._step = 0 if message.sequence == 0 else 1
+        counted = message.sequence == self._last.get(message.channel_id, 0) + self._step
+        self._last[message.channel_id] = message.sequence
         self.wrong += not counted or message.publish_time_ns != message.log_time_ns
 
 

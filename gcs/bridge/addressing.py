@@ -20,6 +20,7 @@ from gcs.bridge.meaning.meaning import Seen
 from gcs.bridge.needed_rates import Rates
 from gcs.bridge.pending_requests import From
 from gcs.bridge.routing import TARGETS, readdressed, target_of
+from gcs.bridge.thinned_streams import ThinnedStreams
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address
 from gcs.wire.frame import Frame
@@ -46,8 +47,12 @@ class Given:
 class Judges:
     """One for each vehicle, by its system id."""
 
-    def __init__(self, rules: BridgeRules, needed_hz: Rates, control: ControlServer) -> None:
-        """`needed_hz`: how often the gate needs which message; `control`: who is in control."""
+    def __init__(
+        self, rules: BridgeRules, needed_hz: Rates, control: ControlServer, thinned: ThinnedStreams
+    ) -> None:
+        """`needed_hz`: how often the gate needs which message; `control`: who is in control;
+        `thinned`: how often which client wants what the gate needs, of all vehicles."""
+        self._thinned = thinned
         self._rules = rules
         self._needed_hz = needed_hz
         self._control = control
@@ -57,7 +62,7 @@ class Judges:
         """What judges everything that is for that vehicle."""
         found = self._by_sysid.get(sysid)
         if found is None:
-            found = Judge(self._rules, self._needed_hz, self._control)
+            found = Judge(self._rules, self._needed_hz, self._control, self._thinned)
             self._by_sysid[sysid] = found
         return found
 

@@ -6,7 +6,7 @@ what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 from gcs import ipc
@@ -33,6 +33,7 @@ from gcs.bridge.needed_rates import Rates
 from gcs.bridge.pending_requests import From
 from gcs.bridge.refused_addresses import RefusedAddresses, WhyNotOurs, nobody_else
 from gcs.bridge.routing import Routes, target_of
+from gcs.bridge.thinned_streams import ThinnedStreams
 from gcs.bridge.unheard_clients import Unheard
 from gcs.bridge.unverified_clients import Unverified
 from gcs.gate.effects import Level
@@ -66,7 +67,8 @@ class Bridge:
         clients send; one sample of their setpoint streams counts for `deadman_ns`."""
         self._own = own
         self._control = ControlServer()
-        self._judges = Judges(rules, needed_hz, self._control)
+        self._thinned = ThinnedStreams(needed_hz)
+        self._judges = Judges(rules, needed_hz, self._control, self._thinned)
         self._silent_ns = silent_ns
         self._timing = timing
         self._deadman_ns = deadman_ns
@@ -157,6 +159,7 @@ class Bridge:
         if not client.joined:
             return []
         client.joined = False
+        self._thinned.forget(client.link)
         del self._by_number[client.number]
         self._control.forget(client.number)
         taken_back = self._judges.client_lost(client, self._own)
@@ -259,15 +262,18 @@ class Bridge:
 
     def from_vehicle(
         self, frames: Sequence[Frame], now_ns: int
-    ) -> Iterable[tuple[int, Sequence[bytes]]]:
+    ) -> Sequence[tuple[int, Sequence[bytes], Sequence[bytes]]]:
         """What goes to which client link of frames that came together from the vehicle's side, as
-        they are and in their order."""
+        they are and in their order; and which of these are left out, as that client asked for
+        fewer."""
         shares = self.routes.shares(frames)
         if self.unverified:
             shares = [*shares, *self.unverified.shares(frames)]
-        for link, raws in shares:
-            self._by_link[link].sent.count(len(raws), now_ns)
-        return shares
+        left_out = self._thinned.left_out(frames, now_ns)
+        done = [(link, raws, left_out.get(link, ())) for link, raws in shares]
+        for link, raws, fewer in done:
+            self._by_link[link].sent.count(len(raws) - len(fewer), now_ns)
+        return done
 
     def parameter(
         self, message: ParamValue, autopilot: str, vehicle: int, now_ns: int

@@ -274,8 +274,9 @@ class Dialogue:
         ]
 
     def _stream_verdict(self, event: ipc.StreamVerdictEvent, now_ns: int) -> list[BridgeEffect]:
-        """Samples are refused from now on, or flown again."""
-        if self._streams_from is None:
+        """Samples are refused from now on, or flown again.  Those that come while control is being
+        taken are not flown yet, which the record has and a client need not read."""
+        if self._streams_from is None or event.code == Code.CONTROL_PENDING:
             return []
         if event.outcome == "accepted":
             return self.text(self._streams_from, Level.INFO, "stream: flown", now_ns)

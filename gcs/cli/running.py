@@ -24,15 +24,18 @@ def station_for(links: Sequence[str], *, anywhere: bool = False) -> Description 
     """The running station that has one of `links` open.
 
     `anywhere`: if none has, the only one that runs will do, whatever its link is.  Raises
-    ExitError if there are several then.
+    ExitError if there are several then, or if none is found where one may run all the same.
     """
     found = station_on(links)
     if found is not None or not anywhere:
         return found
     everywhere = running_stations()
-    unsafe = why_no_station_is_found()
+    unsafe = "" if everywhere else why_no_station_is_found()
     if unsafe:
-        hint = "remove it, or set XDG_RUNTIME_DIR to a folder of your own, and start it again"
+        hint = (
+            "where none runs, name the vehicle's link with --link; else remove that folder, or set "
+            "XDG_RUNTIME_DIR to a folder of your own, and start the station again"
+        )
         raise ExitError(ExitCode.NO_VEHICLE, f"no running station can be found: {unsafe}", hint)
     if len(everywhere) > 1:
         text = "; ".join(described_shortly(each) for each in everywhere)

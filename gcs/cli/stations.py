@@ -23,7 +23,7 @@ def stations(ctx: click.Context, as_json: bool) -> None:
     """List the running stations of this user: process, vehicle, links, log."""
     if ctx.invoked_subcommand is not None:
         return
-    from gcs.operator.joined import running_stations
+    from gcs.operator.joined import running_stations, why_no_station_is_found
 
     found = running_stations()
     if as_json:
@@ -33,7 +33,8 @@ def stations(ctx: click.Context, as_json: bool) -> None:
         for each in found:
             click.echo("\n".join(_lines(each)))
         if not found:
-            click.echo("no station is running")
+            unsafe = why_no_station_is_found()
+            click.echo(f"no station is found: {unsafe}" if unsafe else "no station is running")
     ctx.exit(ExitCode.DONE)
 
 

@@ -26,18 +26,12 @@ MAX_REST_BYTES = 1 << 24
 
 def running_stations() -> list[Description]:
     """The stations of this user on this machine, the oldest first."""
-    return stations.running(stations.folder_of())
+    return stations.running(*stations.folders_of())
 
 
 def why_no_station_is_found() -> str:
     """Why stations of this user may run and are not found; empty where nothing is in the way."""
-    try:
-        stations.check(stations.folder_of())
-    except stations.Unsafe as error:
-        return str(error)
-    except OSError:
-        pass
-    return ""
+    return next(filter(None, map(stations.why_unsafe, stations.folders_of())), "")
 
 
 def station_on(links: Sequence[str]) -> Description | None:

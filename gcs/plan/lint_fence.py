@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 from gcs.gate.geometry import polygon_fault
 from gcs.plan.errors import Finding, Level
@@ -10,6 +12,7 @@ from gcs.plan.model import Circle, Geodetic, LatLon, Plan, Polygon, Zone
 from gcs.plan.sphere import distance_m, north_east_m
 
 _FAR_M = 20_000.0
+_POLE = "it goes round a pole, where no vehicle's own map holds"
 
 
 def lint_fence(plan: Plan, home: Geodetic | None) -> Iterator[Finding]:
@@ -25,7 +28,7 @@ def _zone_faults(zone: Zone, home: Geodetic | None) -> Iterator[tuple[Level, str
         if not zone.shape.corners:
             yield Level.ERROR, "a polygon needs at least 3 corners, this one has 0"
             return
-        fault = polygon_fault(_plane(zone.shape))
+        fault = _POLE if _round_a_pole(zone.shape) else polygon_fault(_plane(zone.shape))
         if fault is not None:
             yield Level.ERROR, fault
     floor_m, ceiling_m = zone.floor_above_home_m, zone.ceiling_above_home_m
@@ -38,6 +41,13 @@ def _zone_faults(zone: Zone, home: Geodetic | None) -> Iterator[tuple[Level, str
         far_m = distance_m(first, (home.lat_deg, home.lon_deg))
         if far_m > _FAR_M:
             yield Level.WARNING, f"is {far_m / 1000:.0f} km from home"
+
+
+def _round_a_pole(polygon: Polygon) -> bool:
+    """Its longitudes go once round the Earth, so that on no plane it is what it is."""
+    lons_deg = [corner[1] for corner in polygon.corners if isinstance(corner, LatLon)]
+    turns = (math.remainder(b - a, 360.0) for a, b in pairwise([*lons_deg, *lons_deg[:1]]))
+    return abs(sum(turns)) > 180.0
 
 
 def _plane(polygon: Polygon) -> tuple[tuple[float, float], ...]:

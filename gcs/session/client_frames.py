@@ -4,7 +4,8 @@ the client reads.
 A receiver takes a gap in the sequence numbers of a component for lost frames (pymavlink, and
 QGroundControl from memory, modulo 256).  What the bridge answers in a vehicle's name stands between
 the vehicle's own frames; so from the first answer on, these are given numbers that count on over
-it.  A frame that was lost before the bridge still leaves its gap.  Until then nothing is altered.
+it; and so over what is left out for a client that asked for fewer of a message.  A frame that was
+lost before the bridge still leaves its gap.  Until then nothing is altered.
 
 A client that speaks MAVLink 1 only, and goes on so while it is sent MAVLink 2, cannot read that:
 then it is sent MAVLink 1, as far as that can say it.  Not before: many begin with version 1 and go
@@ -53,12 +54,15 @@ class ClientFrames:
         else:
             self._speaks_v2 = True
 
-    def passed(self, raws: Sequence[bytes], now_ns: int) -> Sequence[bytes]:
-        """Frames of others, as they are to leave."""
+    def passed(
+        self, raws: Sequence[bytes], now_ns: int, left_out: Sequence[bytes] = ()
+    ) -> Sequence[bytes]:
+        """Frames of others, as they are to leave; of those that are left out the client is to see
+        no gap."""
         self.keep(raws)
         if self._reads_v1_alone(now_ns):
-            return list(self._as_mavlink1(raws))
-        return self._numbered_on(raws) if self._shift else raws
+            return list(self._as_mavlink1(raws, left_out))
+        return self._numbered_on(raws, left_out) if self._shift or left_out else raws
 
     def keep(self, raws: Sequence[bytes]) -> None:
         """These leave as they are, in this order."""
@@ -112,21 +116,26 @@ class ClientFrames:
             shift = self._shift[source] = _Shift(self._latest(source))
         return with_seq(made, shift.inserted())
 
-    def _numbered_on(self, raws: Sequence[bytes]) -> Sequence[bytes]:
-        """Those of components that were answered for; the others are as they were."""
+    def _numbered_on(self, raws: Sequence[bytes], left_out: Sequence[bytes]) -> Sequence[bytes]:
+        """Those of components that were answered for, or of which a frame was left out; the others
+        are as they were."""
         made: list[bytes] = []
         for raw in raws:
+            if raw in left_out:
+                self._shift_of(raw).left_out()
+                continue
             shift = self._shift.get(source_of(raw))
             made.append(raw if shift is None else with_seq(raw, shift.passed(seq_of(raw))))
         return made
 
-    def _as_mavlink1(self, raws: Iterable[bytes]) -> Iterable[bytes]:
+    def _shift_of(self, raw: bytes) -> _Shift:
+        """Of the frame's component, begun with this frame if need be."""
+        return self._shift.setdefault(source_of(raw), _Shift(seq_of(raw) - 1))
+
+    def _as_mavlink1(self, raws: Iterable[bytes], left_out: Sequence[bytes]) -> Iterable[bytes]:
         for raw in raws:
-            source = source_of(raw)
-            shift = self._shift.get(source)
-            made = as_mavlink1(raw)
-            if shift is None:
-                shift = self._shift[source] = _Shift(seq_of(raw) - 1)
+            shift = self._shift_of(raw)
+            made = None if raw in left_out else as_mavlink1(raw)
             if made is None:
                 shift.left_out()
             else:

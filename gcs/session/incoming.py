@@ -158,8 +158,8 @@ class Incoming:
         effects = self._queue.effects
         mark = len(effects)
         try:
-            for to, raws in self._bridge.bridge.from_vehicle(frames, now_ns):
-                effects += self._links.together(to, raws, now_ns)
+            for to, raws, left_out in self._bridge.bridge.from_vehicle(frames, now_ns):
+                effects += self._links.together(to, raws, now_ns, left_out)
         except Exception as error:
             if len(frames) > 1 and self._in_run:
                 self._queue.back_to(mark)

@@ -176,13 +176,18 @@ class Links:
             self.counts[link].sent += 1
         return [sent]
 
-    def together(self, link: int, raws: Sequence[bytes], now_ns: int) -> list[Transmit]:
-        """Frames that came together, unrecorded: on a client's link they leave together, too."""
+    def together(
+        self, link: int, raws: Sequence[bytes], now_ns: int, left_out: Sequence[bytes] = ()
+    ) -> list[Transmit]:
+        """Frames that came together, unrecorded: on a client's link they leave together, too, but
+        for those that are left out."""
         client = self._clients[link]
         if self._signatures.signed(link):
-            passed = client.passed(raws, now_ns)
+            passed = client.passed(raws, now_ns, left_out)
             signed = [sent for raw in passed for sent in self._leaving(link, raw, now_ns)]
             made = datagrams([sent.data for sent in signed])
+        elif left_out:
+            made = datagrams(client.passed(raws, now_ns, left_out))
         elif client.alters(now_ns):
             made = [client.joined(group, now_ns) for group in groups(raws)]
         else:

@@ -14,6 +14,8 @@ from gcs.wire.frame import Frame
 ALIVE_EVERY_NS = 250_000_000
 """How often the gate is told that something of the vehicle was heard."""
 LINK_SILENT_NS = 2_000_000_000
+HEARD_AGAIN_NS = 1_500_000_000
+"""After a longer silence it is heard again: a heartbeat comes every second, whatever else does."""
 RESTART_SILENCE_NS = 500_000_000
 """A frame that seems older than others, and comes after such a silence, is of a vehicle that
 restarted: on the way no frame is overtaken by that much."""
@@ -30,6 +32,7 @@ class Presence:
 
     def __init__(self, times: Times, gone_ns: int) -> None:
         self._link_silent_ns = times.real_ns(LINK_SILENT_NS)
+        self._heard_again_ns = times.real_ns(HEARD_AGAIN_NS)
         self._restart_silence_ns = times.real_ns(RESTART_SILENCE_NS)
         self.gone_ns = gone_ns
         self._newest: dict[tuple[int, int], int] = {}
@@ -100,6 +103,8 @@ class Presence:
     def alive(self, telemetry: Telemetry, now_ns: int) -> bool:
         """Any message is a sign of life; True where the gate is to hear of it."""
         telemetry.was_gone |= self.is_gone(telemetry, now_ns)
+        if now_ns - telemetry.heard_ns > self._heard_again_ns:
+            telemetry.heard_again_ns = now_ns
         telemetry.heard_ns = now_ns
         if now_ns - telemetry.alive_told_ns < ALIVE_EVERY_NS:
             return False

@@ -37,6 +37,8 @@ class Telemetry:
 
     heartbeat_ns: int = 0
     heard_ns: int = 0
+    heard_again_ns: int = 0
+    """Since then it is heard without a silence in which heartbeats are missing."""
     """When any message of its autopilot came."""
     was_gone: bool = False
     """Something came after a silence in which it was lost, and no heartbeat yet."""

@@ -268,8 +268,8 @@ class LinkPort(Port):
         return (self.link,) if may_read else ()
 
     def turn(self, ready: Sequence[object], now_ns: int) -> None:
-        for text in self.link.poke(now_ns):
-            self._table.news(text)
+        for news in self.link.poke(now_ns):
+            self._table.news(news.text)
         self._come_or_go(now_ns)
         client = self._client
         if client is None or self.link not in ready or self._table.full_turn:

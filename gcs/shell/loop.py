@@ -245,8 +245,8 @@ class Loop:
                         self._wake_if_due()
             elif (due_ns := link.deadline_ns) is None or due_ns > began_ns:
                 continue
-            for text in link.poke(self._clock.now_ns()):
-                self._feed(LinkEvent(number, text))
+            for news in link.poke(self._clock.now_ns()):
+                self._feed(LinkEvent(number, news.text, news.trouble))
         if datagrams:
             before_ns, self._read_ns, self._alone = self._read_ns, began_ns, apart
             if datagrams >= DENSE_DATAGRAMS or began_ns - before_ns < DENSE_NS:

@@ -3,6 +3,7 @@
 Each station has a description (JSON) and beside it, on Linux and macOS, its socket.  The folder is
 `$XDG_RUNTIME_DIR/mavgate`, or one of the user's own in the folder for temporary files, or
 `~/.mavgate` where somebody else has made that first; on Windows `%LOCALAPPDATA%\\mavgate`.
+Stations are looked for in each that may be, as somebody else's folder may come and go.
 Only its user may look into it.  A description whose station has died
 is removed by whoever finds it.
 """
@@ -50,23 +51,35 @@ class Description(msgspec.Struct, frozen=True):
     speedup: float = 1.0
 
 
-def folder_of(environment: Mapping[str, str] = os.environ) -> Path:
-    """Where this user's stations are; it need not exist."""
+def folders_of(environment: Mapping[str, str] = os.environ) -> list[Path]:
+    """Where this user's stations may be, the usual place first; none need exist."""
     if sys.platform == "win32":
-        return Path(environment.get("LOCALAPPDATA") or tempfile.gettempdir()) / "mavgate"
+        return [Path(environment.get("LOCALAPPDATA") or tempfile.gettempdir()) / "mavgate"]
     runtime = Path(environment.get("XDG_RUNTIME_DIR") or os.devnull)
     if runtime.is_dir():
-        return runtime / "mavgate"
-    folder = Path(tempfile.gettempdir()) / f"mavgate-{os.getuid()}"
+        return [runtime / "mavgate"]
+    folders = [Path(tempfile.gettempdir()) / f"mavgate-{os.getuid()}"]
+    with contextlib.suppress(RuntimeError):
+        folders.append(Path.home() / ".mavgate")
+    return folders
+
+
+def folder_of(environment: Mapping[str, str] = os.environ) -> Path:
+    """Where a new station of this user belongs; it need not exist."""
+    folders = folders_of(environment)
+    # Anybody may have made the first one, and could else take `gcs abort` away.
+    return folders[0] if not why_unsafe(folders[0]) else folders[-1]
+
+
+def why_unsafe(folder: Path) -> str:
+    """Why it cannot be trusted; empty where it can, or does not exist."""
     try:
         check(folder)
-    except Unsafe:
-        # Anybody may have made it first, and could else take `gcs abort` away.
-        with contextlib.suppress(RuntimeError):
-            return Path.home() / ".mavgate"
+    except Unsafe as error:
+        return str(error)
     except OSError:
         pass
-    return folder
+    return ""
 
 
 def made_safe(folder: Path) -> Path:
@@ -101,11 +114,16 @@ def write(folder: Path, description: Description) -> Path:
     return path
 
 
-def running(folder: Path) -> list[Description]:
+def running(*folders: Path) -> list[Description]:
     """Those that live, the oldest first; what dead ones left is removed.
 
     A folder that is not there holds none, and so does one that others can write to.
     """
+    found = [each for folder in folders for each in _running_in(folder)]
+    return sorted(found, key=lambda each: each.started_ns)
+
+
+def _running_in(folder: Path) -> list[Description]:
     try:
         check(folder)
         paths = sorted(folder.glob(f"*{SUFFIX}"))
@@ -118,7 +136,7 @@ def running(folder: Path) -> list[Description]:
             found.append(description)
         else:
             _remove(path, description)
-    return sorted(found, key=lambda each: each.started_ns)
+    return found
 
 
 def connect(description: Description) -> socket.socket:

@@ -164,9 +164,41 @@ def test_who_plays_the_vehicle_is_not_believed(personality: Personality) -> None
 def test_no_client_makes_the_gates_own_streams_slower(personality: Personality) -> None:
     """MAVProxy asks an ArduPilot for all streams at 4 Hz, another client for no positions."""
     flight, client = flying(personality)
+    looks_on = flight.join(255, 190)
     client.send(dialect.MAVLink_request_data_stream_message(1, 1, 0, 4, 1))
     assert client.ask(511, 32, -1) == ACCEPTED  # SET_MESSAGE_INTERVAL LOCAL_POSITION_NED
     flight.run(1)
-    before = len(client.messages("LOCAL_POSITION_NED"))
+    before = len(looks_on.messages("LOCAL_POSITION_NED"))
     flight.run(4)
-    assert len(client.messages("LOCAL_POSITION_NED")) - before >= 29 * 4
+    assert len(looks_on.messages("LOCAL_POSITION_NED")) - before >= 29 * 4, "it asked for nothing"
+
+
+def heard(client: Client, name: str) -> int:
+    return len(client.messages(name))
+
+
+def test_a_client_gets_a_stream_as_often_as_it_asked_for_it(personality: Personality) -> None:
+    """QGroundControl's groups at 2 to 3 Hz came at the 30 and 20 Hz that the gate needs."""
+    flight = BridgedFlight(personality)
+    single, groups, none = flight.join(), flight.join(255, 190), flight.join(254, 190)
+    flight.connected()
+    for msgid, interval_us in ((30, 500_000), (32, 500_000)):
+        assert single.ask(511, msgid, interval_us) == ACCEPTED
+        assert none.ask(511, msgid, -1) == ACCEPTED
+    for group, hz in ((6, 3), (10, 10)):
+        groups.send(dialect.MAVLink_request_data_stream_message(1, 1, group, hz, 1))
+    flight.run(2)
+    names = ("LOCAL_POSITION_NED", "ATTITUDE")
+    clients = (single, groups, none)
+    before = [[heard(client, name) for name in names] for client in clients]
+    flight.beating(10)
+    counts = [
+        [heard(client, name) - was for name, was in zip(names, each, strict=True)]
+        for client, each in zip(clients, before, strict=True)
+    ]
+    assert counts[0] == pytest.approx([20, 20], abs=1)
+    assert counts[1] == pytest.approx([30, 100], abs=1)
+    assert counts[2] == [0, 0]
+    assert none.ask(512, 32) == ACCEPTED  # REQUEST_MESSAGE
+    flight.run(1)
+    assert heard(none, "LOCAL_POSITION_NED") == before[2][0] + 1

@@ -34,6 +34,33 @@ def flying(personality: Personality) -> tuple[BridgedFlight, Client]:
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
+def test_samples_that_come_while_control_is_being_taken_are_not_told_as_refused(
+    personality: Personality,
+) -> None:
+    """They are not flown yet; the record has that they were not."""
+    flight, client = flying(personality)
+    hold, guided = ((4, 3), (6, 0)) if personality == "px4" else ((17, 0), (4, 0))
+    assert client.ask(SET_MODE, 1, *hold) == ACCEPTED
+    flight.run(2.0)
+    client.command(SET_MODE, 1, *guided)
+    flight.until(lambda: flight.session.gate.control is Control.TAKING, 2.0)
+    for _ in range(60):
+        client.send(
+            dialect.MAVLink_set_position_target_local_ned_message(
+                0, *VEHICLE, 1, VELOCITY_ONLY, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0, 0
+            )
+        )
+        flight.run(0.05)
+    assert flight.is_in(State.STREAMING)
+    streams = [each for each in flight.decisions() if each.word == "stream"]
+    assert [(each.outcome, each.code) for each in streams] == [
+        ("refused", "CONTROL_PENDING"),
+        ("accepted", ""),
+    ]
+    assert "refused" not in client.texts()
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_full_speed_at_the_fence_is_held_inside_and_flown_back(personality: Personality) -> None:
     flight, client = flying(personality)
 

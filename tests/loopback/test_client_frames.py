@@ -83,6 +83,24 @@ def test_answers_of_the_bridge_do_not_look_like_lost_frames(
     assert counted.mav_loss < 0.07 * counted.mav_count
 
 
+@pytest.mark.parametrize("personality", PERSONALITIES)
+@pytest.mark.parametrize("key", [None, KEY], ids=["plain", "vehicle signs"])
+def test_what_a_client_asked_less_of_does_not_look_like_lost_frames(
+    personality: Personality, key: bytes | None
+) -> None:
+    flight = BridgedFlight(personality, vehicle_key=key, station_key=key)
+    client = flight.join()
+    flight.connected()
+    assert client.ask(511, 30, 500_000) == client.ask(511, 32, 500_000) == 0
+    flight.beating(5)
+    client.heard.clear()
+    before = for_the_bridge_alone(flight)
+    flight.beating(10)
+    counted = loss_of(client)
+    unknown = sum(heard.message.get_msgId() < 0 for heard in client.heard)
+    assert counted.mav_loss <= for_the_bridge_alone(flight) - before + unknown
+
+
 class OldClient(Client):
     """It speaks MAVLink 1 and reads nothing else."""
 

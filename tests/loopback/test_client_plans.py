@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import all as dialect
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from gcs.wire.codec import decode
-from gcs.wire.messages import CommandLong
+from gcs.wire.messages import CommandLong, MissionClearAll
 from tests.loopback.bridged import VEHICLE
 from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.lossy_link import Weather
@@ -33,6 +33,7 @@ from tests.loopback.plan_clients import (
     Upload,
     mission,
 )
+from tests.loopback.stranger import stranger_fences
 from vehicle_sim.autopilot.interface import PlanItem as OnBoard
 
 DENIED, DENIED_COMMAND = 14, 2
@@ -320,12 +321,34 @@ def test_where_the_policy_lets_them_they_are_on_board_whole(
 def test_all_plans_at_once_are_not_cleared_where_the_fence_must_stay(
     personality: Personality,
 ) -> None:
-    flight = connected(personality)
-    client = flight.clients[1]
+    flight = PlanFlight(personality)
+    client = flight.join()
+    stranger_fences(flight, 100.0)
+    flight.connected()
     client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, ALL))
     flight.run(1.0)
     assert [ack.type for ack in client.messages("MISSION_ACK")] == [DENIED]
     assert not flight.to_vehicle("MISSION_CLEAR_ALL")
+
+
+@pytest.mark.parametrize("personality", PERSONALITIES)
+def test_all_plans_at_once_are_the_mission_where_there_is_nothing_else(
+    personality: Personality,
+) -> None:
+    """A client that repeats it meanwhile is answered once, by the type that it asked for."""
+    flight = connected(personality)
+    client = flight.clients[1]
+    assert Mavsdk(flight, client, mission(personality, *SQUARE)).ended() == "complete"
+    flight.run(2.0)
+    for _ in range(2):
+        client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, ALL))
+    flight.run(1.0)
+    acks = [(ack.type, ack.mission_type) for ack in client.messages("MISSION_ACK")]
+    assert acks == [(ACCEPTED, 0), (ACCEPTED, ALL)], client.texts()
+    assert flight.vehicle.plan == ()
+    cleared = [decode(frame) for frame in flight.to_vehicle("MISSION_CLEAR_ALL")]
+    assert [each.mission_type for each in cleared if isinstance(each, MissionClearAll)] == [0]
+    assert [one.word for one in flight.decisions("complete")][-1] == "mission_clear"
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)

@@ -239,3 +239,17 @@ def test_a_hold_that_nobody_answers_is_repeated_until_it_is_seen(personality: Pe
     flight.run(3.0)
     assert flight.sent_commands(176, back_ns)
     assert flight.vehicle.mode_name == HOLDS[personality]
+
+
+@both_personalities
+def test_after_a_blackout_of_the_link_no_stream_is_said_to_have_stopped(
+    personality: Personality,
+) -> None:
+    flight = Flight(personality)
+    flight.connected()
+    for seconds in (2.2, 3.0, 4.1):
+        clear, flight.down.weather = flight.down.weather, Weather(loss=1.0)
+        flight.run(seconds)
+        flight.down.weather = clear
+        flight.run(3.0)
+    assert "sends no positions" not in str(flight.told())

@@ -22,6 +22,7 @@ from gcs.bridge.judge.target_component import why_not_component
 from gcs.bridge.mission_mode import MissionMode
 from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
 from gcs.bridge.plans.server import PLAN_MESSAGES
+from gcs.bridge.thinned_streams import ThinnedStreams
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import ARDUPILOT
@@ -58,8 +59,12 @@ POINTED_BY_ANOTHER: Final = Refusal(
 class Judge:
     """Of everything that clients send to one vehicle."""
 
-    def __init__(self, rules: BridgeRules, needed_hz: Rates, control: ControlServer) -> None:
-        """`needed_hz`: how often the gate needs which message; `control`: who is in control."""
+    def __init__(
+        self, rules: BridgeRules, needed_hz: Rates, control: ControlServer, thinned: ThinnedStreams
+    ) -> None:
+        """`needed_hz`: how often the gate needs which message; `control`: who is in control;
+        `thinned`: how often which client wants what the gate needs."""
+        self._thinned = thinned
         self._control = control
         self._needed_hz = needed_hz
         self._asked_rates = AskedRates(rules, needed_hz)
@@ -131,6 +136,7 @@ class Judge:
             return Judged(False, [ToVehicle(given.frame.raw)])
         instead: Message | Refusal
         again: list[BridgeEffect] = []
+        obeyed = True
         if isinstance(message, RequestDataStream):
             seen = given.look()
             obeyed = seen is not None and seen.autopilot is ARDUPILOT
@@ -142,6 +148,7 @@ class Judge:
             instead = self._asked_rates.command(slowest, given.client.number)
         if isinstance(instead, Refusal):
             return refuse(given, message, row, instead)
+        self._thinned.asked(given.by.link, given.by.addressed, message, obeyed=obeyed)
         if instead is message:
             return Judged(False, [ToVehicle(given.frame.raw), *again])
         return Judged(False, [AsksVehicle(given.by.source, instead), *again])

@@ -24,6 +24,7 @@ from gcs.wire.messages import Message, MissionClearAll, MissionCount, MissionReq
 
 KEPT_NS: Final = 30_000_000_000
 """DroneKit asks for a list once, and waits for it as long as this."""
+_NOT_MISSION: Final = (MissionType.FENCE, MissionType.RALLY)
 
 
 class PlanJudge:
@@ -38,12 +39,13 @@ class PlanJudge:
     def judge(self, given: Received, message: Message, row: Row) -> Judged:
         """What a client says about missions, fences and rally points."""
         seen, client = given.look(), given.client
+        mission_alone = seen is not None and _means_mission_alone(given, message, seen)
         if seen is not None and isinstance(message, MissionCount | MissionClearAll):
             if _takes_off_nothing(given, message, seen) and not client.plans.busy:
                 kind = message.mission_type
                 done = acknowledgement(given.by.source, MissionResult.ACCEPTED, kind)
                 return Judged(False, [Answers(given.by.link, given.by.addressed, done)])
-            judged = self._set_up.refuses(given, message, row, seen)
+            judged = None if mission_alone else self._set_up.refuses(given, message, row, seen)
             if judged is not None:
                 return judged
         busy = seen is not None and seen.plan_transfer
@@ -66,7 +68,7 @@ class PlanJudge:
                 no = acknowledgement(given.by.source, MissionResult.ERROR, kind)
                 told.append(Answers(given.by.link, given.by.addressed, no))
             return Judged(True, told)
-        effects = client.plans.handle(message, given.by, given.now_ns)
+        effects = client.plans.handle(message, given.by, given.now_ns, mission_alone=mission_alone)
         refused = any(
             isinstance(effect, plan_effects.Refused) and not effect.earlier for effect in effects
         )
@@ -90,8 +92,20 @@ def _takes_off_nothing(
     every plan (from memory), and whatever the policy says of them, nothing is changed."""
     if isinstance(message, MissionCount) and message.count:
         return False
-    is_for_it = given.by.addressed.compid == given.autopilot.compid
-    return is_for_it and message.mission_type in seen.not_on_board
+    return _is_for_autopilot(given) and message.mission_type in seen.not_on_board
+
+
+def _means_mission_alone(given: Received, message: Message, seen: Seen) -> bool:
+    """A clear of all plans where there is no fence and no rally point, and none is on its way."""
+    if not isinstance(message, MissionClearAll) or message.mission_type != MissionType.ALL:
+        return False
+    nothing = all(each in seen.not_on_board for each in _NOT_MISSION)
+    under_way = given.client.plans.under_way(_NOT_MISSION)
+    return _is_for_autopilot(given) and nothing and not under_way
+
+
+def _is_for_autopilot(given: Received) -> bool:
+    return given.by.addressed.compid == given.autopilot.compid
 
 
 def of_plan(

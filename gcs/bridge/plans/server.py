@@ -12,7 +12,7 @@ it is here.  Downloads go to the vehicle as they are.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import Final
 
 from gcs import ipc
@@ -99,6 +99,11 @@ class PlanServer:
         """An upload of this client is under way, from its first message to its answer."""
         return self._collecting is not None or self._submissions.current is not None
 
+    def under_way(self, kinds: Container[MissionType]) -> bool:
+        """A plan of one of these types is being collected, or is on its way to the vehicle."""
+        collected = self._collecting is not None and self._collecting.kind in kinds
+        return collected or any(each in kinds for each in self._submissions.kinds)
+
     # ----------------------------------------------------------------------- the station
 
     def finding(self, text: str, now_ns: int) -> list[PlanEffect]:
@@ -115,8 +120,11 @@ class PlanServer:
 
     # ----------------------------------------------------------------------- the client
 
-    def handle(self, message: Message, asked_by: From, now_ns: int) -> list[PlanEffect]:
-        """One message of this client about plans."""
+    def handle(
+        self, message: Message, asked_by: From, now_ns: int, *, mission_alone: bool = False
+    ) -> list[PlanEffect]:
+        """One message of this client about plans.  `mission_alone`: of all plans that it clears
+        there is a mission at the most."""
         match message:
             case MissionCount():
                 return self._count(message, asked_by, now_ns)
@@ -125,7 +133,7 @@ class PlanServer:
             case MissionAck():
                 return self._acknowledged(message, asked_by, now_ns)
             case MissionClearAll():
-                return self._clear(message, asked_by, now_ns)
+                return self._clear(message, asked_by, now_ns, mission_alone=mission_alone)
             case MissionWritePartialList():
                 text = "a part of a plan cannot be verified: send the whole plan"
                 return self._replies.refuse(
@@ -157,7 +165,7 @@ class PlanServer:
                 asked_by, message, MissionResult.NO_SPACE, Code.BAD_MISSION, text, now_ns
             )
         if message.count == 0:
-            return self._begin_clear(kind, asked_by, now_ns, begins_anew=True)
+            return self._begin_clear(Submission(asked_by, kind), now_ns, begins_anew=True)
         collecting = self._collecting
         if collecting is not None and collecting.opened == message and not collecting.items:
             return replies(asked_by, collecting.again(now_ns))
@@ -256,7 +264,9 @@ class PlanServer:
             return []
         return self._submissions.cancel(message.mission_type)
 
-    def _clear(self, message: MissionClearAll, asked_by: From, now_ns: int) -> list[PlanEffect]:
+    def _clear(
+        self, message: MissionClearAll, asked_by: From, now_ns: int, *, mission_alone: bool
+    ) -> list[PlanEffect]:
         refused = self._cannot_take(message, asked_by, now_ns)
         if refused is not None:
             return refused
@@ -265,13 +275,13 @@ class PlanServer:
             return [reply(asked_by, again)]
         self._last_ack.forget()
         kind = MissionType(message.mission_type)
-        return self._begin_clear(kind, asked_by, now_ns, begins_anew=False)
+        new = Submission(asked_by, kind, mission_alone=mission_alone)
+        return self._begin_clear(new, now_ns, begins_anew=False)
 
-    def _begin_clear(
-        self, kind: MissionType, asked_by: From, now_ns: int, *, begins_anew: bool
-    ) -> list[PlanEffect]:
+    def _begin_clear(self, new: Submission, now_ns: int, *, begins_anew: bool) -> list[PlanEffect]:
         """A plan of no items is none.  It `begins_anew`, as each first message of an upload does:
         it alone is acknowledged, and not what it replaces."""
+        kind = new.kind
         if self._submissions.clears(kind):
             return []
         given_up: list[PlanEffect] = []
@@ -283,7 +293,7 @@ class PlanServer:
         if not begins_anew:
             given_up += self._submissions.give_up(kind, now_ns)
         self._replies.another_plan()
-        return given_up + self._submissions.submit(Submission(asked_by, kind), now_ns)
+        return given_up + self._submissions.submit(new, now_ns)
 
     # ----------------------------------------------------------------------------- time
 

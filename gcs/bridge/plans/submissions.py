@@ -51,6 +51,8 @@ class Submission:
     withdrawn: bool = False
     findings: int = 0
     """That the client was told."""
+    mission_alone: bool = False
+    """A clear of all plans: there is no other plan than a mission."""
 
 
 class Submissions:
@@ -67,6 +69,12 @@ class Submissions:
     def current(self) -> Submission | None:
         """What the station was asked for and has not answered yet."""
         return self._current
+
+    @property
+    def kinds(self) -> list[MissionType]:
+        """Of all that is not over, also where the client does not want it any more."""
+        first = [] if self._current is None else [self._current]
+        return [each.kind for each in (*first, *self._waiting)]
 
     @property
     def _wanted(self) -> list[Submission]:
@@ -249,8 +257,9 @@ class Submissions:
 
 
 def _to_station(submission: Submission) -> PlanEffect:
-    plan = submission.plan
-    return Clear(submission.kind) if plan is None else Upload(plan)
+    if submission.plan is not None:
+        return Upload(submission.plan)
+    return Clear(MissionType.MISSION if submission.mission_alone else submission.kind)
 
 
 def _replaces(new: Submission, before: Submission) -> bool:

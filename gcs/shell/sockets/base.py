@@ -6,6 +6,7 @@ import errno
 import socket
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from gcs.shell.endpoints import Endpoint
 
@@ -36,6 +37,14 @@ class Counters:
     """Sends that found no peer, no room or no route."""
 
 
+class News(NamedTuple):
+    """What happened to a link, as a line."""
+
+    text: str
+    trouble: bool = False
+    """Somebody should look at it."""
+
+
 class Link(ABC):
     """One open link.
 
@@ -52,7 +61,7 @@ class Link(ABC):
     def __init__(self, endpoint: Endpoint) -> None:
         self.endpoint = endpoint
         self.counters = Counters()
-        self._news: list[str] = []
+        self._news: list[News] = []
 
     @abstractmethod
     def fileno(self) -> int: ...
@@ -85,7 +94,7 @@ class Link(ABC):
     def deadline_ns(self) -> int | None:
         return None
 
-    def poke(self, now_ns: int) -> list[str]:
+    def poke(self, now_ns: int) -> list[News]:
         """Do what is due; what happened to the link since the last call (a peer came, a
         connection was lost), a line each.
         """

@@ -9,7 +9,7 @@ import sys
 from typing import Final, Protocol
 
 from gcs.shell.endpoints import Endpoint
-from gcs.shell.sockets.base import Link
+from gcs.shell.sockets.base import Link, News
 
 REOPEN_NS: Final = 1_000_000_000
 """How often to look whether a device that was unplugged is there again."""
@@ -94,7 +94,7 @@ class SerialLine(Link):
         except OSError:
             return data
 
-    def poke(self, now_ns: int) -> list[str]:
+    def poke(self, now_ns: int) -> list[News]:
         if self._port_open is None and now_ns >= self._reopen_ns:
             self._reopen_ns = now_ns + REOPEN_NS
             self._reopen()
@@ -106,12 +106,14 @@ class SerialLine(Link):
         except OSError:
             return
         self._fd = _watched(self._port_open)
-        self._news.append(f"{self.endpoint}: it is there again")
+        self._news.append(News(f"{self.endpoint}: it is there again"))
 
     def _lose(self, why: str) -> None:
         self.close()
         self._port_open, self._fd, self._unsent = None, -1, b""
-        self._news.append(f"{self.endpoint}: lost, {why}; it is opened when it is there again")
+        self._news.append(
+            News(f"{self.endpoint}: lost, {why}; it is opened when it is there again")
+        )
 
     def close(self) -> None:
         if self._port_open is not None:

@@ -7,7 +7,7 @@ import os
 import socket
 
 from gcs.shell.endpoints import Endpoint
-from gcs.shell.sockets.base import MAX_READ, Link, bind, resolve
+from gcs.shell.sockets.base import MAX_READ, Link, News, bind, resolve
 
 RECONNECT_NS = 1_000_000_000
 CONNECTING_NS = 50_000_000
@@ -103,7 +103,7 @@ class _Tcp(Link):
         if self._stream is not None:
             self._stream.socket.close()
             self._stream = None
-            self._news.append(f"{self.endpoint}: the connection was closed")
+            self._news.append(News(f"{self.endpoint}: the connection was closed"))
         self._deadline_ns = 0
 
 
@@ -123,7 +123,7 @@ class TcpOut(_Tcp):
     def drain(self, limit: int) -> list[bytes]:
         return self._read(limit)
 
-    def poke(self, now_ns: int) -> list[str]:
+    def poke(self, now_ns: int) -> list[News]:
         if self._stream is not None:
             self._stream.flush()
             self._deadline_ns = now_ns + CONNECTING_NS if self._stream.queued else None
@@ -149,7 +149,7 @@ class TcpOut(_Tcp):
         if code in (0, errno.EISCONN):
             self._stream, self._trying = Stream(self._trying), None
             self._deadline_ns = None
-            self._news.append(f"{self.endpoint}: connected")
+            self._news.append(News(f"{self.endpoint}: connected"))
         elif code in _UNDER_WAY and now_ns < self._give_up_ns:
             self._deadline_ns = now_ns + CONNECTING_NS
         else:
@@ -197,7 +197,7 @@ class TcpIn(_Tcp):
             self._accept()
         return self._read(limit)
 
-    def poke(self, now_ns: int) -> list[str]:
+    def poke(self, now_ns: int) -> list[News]:
         self._accept()
         if self._stream is not None:
             self._stream.flush()
@@ -212,7 +212,7 @@ class TcpIn(_Tcp):
         if self._stream is not None:
             self._stream.socket.close()
         self._stream = Stream(newer)
-        self._news.append(f"{self.endpoint}: {peer[0]}:{peer[1]} connected")
+        self._news.append(News(f"{self.endpoint}: {peer[0]}:{peer[1]} connected"))
 
     def close(self) -> None:
         self._listener.close()

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import socket
+from collections.abc import Sequence
 
 from gcs.shell.endpoints import Endpoint
-from gcs.shell.sockets.base import MAX_READ, Link, bind, grow_buffer, resolve
+from gcs.shell.sockets.base import MAX_READ, Link, News, bind, grow_buffer, resolve
 
 MAX_PEERS = 4
 """How many senders an open port answers; the one heard longest ago makes room."""
@@ -14,6 +15,7 @@ _BEGINS = (b"\xfd", b"\xfe")
 THERE_NS = 3_000_000_000
 """How long after its last datagram a peer still counts as there."""
 MOST_LEFT_OUT = 64
+MOST_WARNED_OF = 64
 _Peer = tuple[str, int]
 
 
@@ -48,6 +50,8 @@ class UdpIn(_Udp):
         self._latest: _Peer | None = None
         self._left_out: dict[_Peer, int] = {}
         """Peers that are not heard, and when each sent something last."""
+        self._warned_of: set[_Peer] = set()
+        """Peers that came beside others, which is told once of each."""
         self._left_out_ns = 0
         """One of these is a peer as any other again once it was silent for so long."""
         self._drained: list[bytes] = []
@@ -111,9 +115,9 @@ class UdpIn(_Udp):
         why = "it sends back what clients are sent"
         until = f"until it has been silent for {silent_ns / 1e9:.0f} s"
         host, port = peer
-        self._news.append(f"{self.endpoint}: {host}:{port} is left out, {until}: {why}")
+        self._news.append(News(f"{self.endpoint}: {host}:{port} is left out, {until}: {why}"))
 
-    def poke(self, now_ns: int) -> list[str]:
+    def poke(self, now_ns: int) -> list[News]:
         self._now_ns = now_ns
         return super().poke(now_ns)
 
@@ -122,18 +126,25 @@ class UdpIn(_Udp):
             self._peers[self._latest] = self._now_ns
         self._latest = peer
         if peer not in self._peers:
-            text = f"{self.endpoint}: {peer[0]}:{peer[1]} sends to us"
             since_ns = self._now_ns - THERE_NS
             others = [each for each, heard_ns in self._peers.items() if heard_ns >= since_ns]
-            if others:
-                named = ", ".join(f"{host}:{port}" for host, port in others)
-                text += f", beside {named}: one of them may play the vehicle to us"
-            self._news.append(text)
+            self._tell_of(peer, others)
             if len(self._peers) == MAX_PEERS:
                 del self._peers[next(iter(self._peers))]
         else:
             del self._peers[peer]
         self._peers[peer] = self._now_ns
+
+    def _tell_of(self, peer: _Peer, others: Sequence[_Peer]) -> None:
+        """It has come, and is there beside `others`."""
+        text = f"{self.endpoint}: {peer[0]}:{peer[1]} sends to us"
+        if not others:
+            self._news.append(News(text))
+        elif peer not in self._warned_of and len(self._warned_of) < MOST_WARNED_OF:
+            self._warned_of.add(peer)
+            named = ", ".join(f"{host}:{port}" for host, port in others)
+            text += f", beside {named}: one of them may play the vehicle to us"
+            self._news.append(News(text, trouble=True))
 
     def send(self, data: bytes) -> None:
         if not self._peers:

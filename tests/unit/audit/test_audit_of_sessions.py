@@ -22,6 +22,8 @@ from gcs.audit.turns import NoStartError
 from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
 from gcs.policy_file import load_policy
+from gcs.record import writer
+from gcs.record.backend import Backend, FoxgloveBackend, McapBackend
 from gcs.record.guarded_file import RawFile, open_exclusive
 from gcs.record.writer import Recorder
 from gcs.session.effects import Effect
@@ -310,6 +312,7 @@ def test_files_that_follow_one_another_without_a_hole_are_one_record(
     (found,) = sessions(reversed(recorder.parts))
     assert found.paths == recorder.parts
     result = audited(found.messages(), found.attachments())
+    assert found.misnumbered == 0
     assert (result.first, result.notes, result.good) == ([], [], True)
     assert result.seconds > 2.0
 
@@ -335,7 +338,7 @@ def test_sessions_are_told_apart(tmp_path: Path) -> None:
 
 def _rewritten(source: Path, target: Path, **to: object) -> Path:
     """The record once more, whole and closed: up to `until_ns`, its metadata `metadata`, each
-    message's number and publish time moved by `sequence` and `publish_ns`."""
+    message's number times `sequence` and moved by `shift`, its publish time by `publish_ns`."""
     until_ns = cast("int", to.get("until_ns", 1 << 62))
     with source.open("rb") as old, target.open("wb") as new:
         writer = Writer(new)
@@ -370,7 +373,8 @@ def _rewritten(source: Path, target: Path, **to: object) -> Path:
                 message.log_time,
                 message.data,
                 message.publish_time + cast("int", to.get("publish_ns", 0)),
-                message.sequence * cast("int", to.get("sequence", 1)),
+                message.sequence * cast("int", to.get("sequence", 1))
+                + cast("int", to.get("shift", 0)),
             )
         writer.finish()  # type: ignore[no-untyped-call]  # mcap leaves it bare
     return target
@@ -397,6 +401,8 @@ def flown(tmp_path: Path, beats: FrameWriter) -> Path:
         ({"until_ns": START_NS + 2_000_000_000}, "the record has no end"),
         ({"metadata": {"policy": "another"}}, "metadata mavgate: another content"),
         ({"sequence": 2}, "another number or publish time"),
+        ({"shift": 1}, "another number or publish time"),
+        ({"shift": -1}, "another number or publish time"),
         ({"publish_ns": 1}, "another number or publish time"),
     ],
 )
@@ -408,6 +414,21 @@ def test_what_is_cut_off_or_altered_beside_the_messages_is_found(
     found = gcs("log", "audit", _rewritten(flown, tmp_path / "other.mcap", **to))
     assert found.exit_code == 1
     assert told in found.output
+
+
+@pytest.mark.parametrize("backend", [FoxgloveBackend, McapBackend])
+def test_a_record_as_either_library_writes_it_is_numbered_right(
+    backend: type[Backend], tmp_path: Path, beats: FrameWriter, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(writer, "best_backend", backend)
+    recorder = Recorder.open(tmp_path, "z", "20260101-000000", START_NS, sealed=True)
+    session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
+    for _ in range(2):
+        session.feed(Datagram(0, beats.write(BEAT)))
+        session.wait(1.0)
+    recorder.close(session.now_ns)
+    ended = gcs("log", "audit", recorder.path)
+    assert "another number" not in ended.output
 
 
 def test_a_second_record_behind_the_first_is_found(flown: Path, tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ def met() -> Table:
 
 def from_vehicle(table: Table, *frames: Frame) -> dict[int, list[bytes]]:
     sent: dict[int, list[bytes]] = {}
-    for link, raws in table.bridge.from_vehicle(frames, table.now_ns):
+    for link, raws, _ in table.bridge.from_vehicle(frames, table.now_ns):
         sent.setdefault(link, []).extend(raws)
     return sent
 

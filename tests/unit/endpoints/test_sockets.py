@@ -14,7 +14,7 @@ import pytest
 from gcs.bridge.link_loops import LEFT_OUT_NS
 from gcs.shell.endpoints import Endpoint, Kind, parse_endpoint
 from gcs.shell.sockets import AddressInUse, Link, SerialUnavailable, TcpIn, TcpOut, UdpIn, open_link
-from gcs.shell.sockets.base import grow_buffer
+from gcs.shell.sockets.base import News, grow_buffer
 from gcs.shell.sockets.tcp import MAX_QUEUED, RECONNECT_NS
 from gcs.shell.sockets.udp import MAX_PEERS, MOST_LEFT_OUT, THERE_NS
 
@@ -95,8 +95,36 @@ def test_a_waiting_port_answers_whoever_sent(opened: Opener) -> None:
     station.send(b"\xfdanswer")
     assert read(vehicle) == [b"\xfdanswer"]
     (news,) = station.poke(0)
-    assert "sends to us" in news
+    assert news.text.endswith("sends to us")
+    assert not news.trouble
     assert station.poke(0) == []
+
+
+def test_a_second_sender_is_warned_of_once(opened: Opener) -> None:
+    """Beside one that is there: it may be another vehicle, or somebody who plays the first one."""
+    station = opened(udp_in())
+    vehicle, *others = (opened(udp_out(station.port)) for _ in range(MAX_PEERS + 1))
+    vehicle.send(FRAME)
+    read(station)
+    station.poke(0)
+    told: list[News] = []
+    for _ in range(3):
+        for each in (*others, vehicle):
+            each.send(FRAME)
+            read(station)
+            told += station.poke(0)
+    assert len(told) == MAX_PEERS + 1, "each is told of once, however often it makes room and comes"
+    assert all(each.trouble for each in told)
+    assert told[0].text == (
+        f"{station.endpoint}: {address_of(others[0])} sends to us, beside {address_of(vehicle)}: "
+        "one of them may play the vehicle to us"
+    )
+
+
+def address_of(link: Link) -> str:
+    with closing(socket.fromfd(link.fileno(), socket.AF_INET, socket.SOCK_DGRAM)) as same:
+        host, port = same.getsockname()
+        return f"{host}:{port}"
 
 
 def test_two_vehicles_on_one_port_both_hear(opened: Opener) -> None:
@@ -177,7 +205,7 @@ def test_a_peer_that_sends_back_is_left_out_until_it_is_silent(opened: Opener) -
     station.leave_out(b"never sent", LEFT_OUT_NS)
     station.leave_out(ODD, LEFT_OUT_NS)
     (news,) = station.poke(now_ns)
-    assert "is left out, until it has been silent for 5 s: it sends back what clients" in news
+    assert "is left out, until it has been silent for 5 s: it sends back what clients" in news.text
     station.send(b"for the vehicle")
     assert read(vehicle) == [b"for the vehicle"]
     other.drain(1)
@@ -281,7 +309,7 @@ def connect(client: Link, now_ns: int = 0) -> int:
     for _ in range(20):
         news = client.poke(now_ns)
         if client.connected:
-            assert any("connected" in line for line in news)
+            assert any("connected" in line.text for line in news)
             return now_ns
         now_ns = due_ns(client) or now_ns
     raise AssertionError("not connected")
@@ -332,7 +360,7 @@ def test_a_lost_connection_is_told_and_made_again(opened: Opener) -> None:
     assert read(client) == []
     assert client.fileno() == -1
     assert due_ns(client) == 0
-    assert any("closed" in line for line in client.poke(now_ns))
+    assert any("closed" in line.text for line in client.poke(now_ns))
     again = opened(tcp_in(server.port))
     connect(client, now_ns + RECONNECT_NS)
     client.send(b"back")

@@ -19,6 +19,7 @@ from gcs.operator.client import StationEnded, StationEvent
 from gcs.operator.errors import ExitError
 from gcs.operator.joined import JoinedStation, station_on
 from gcs.operator.operations import OperationsView
+from gcs.shell import stations
 from gcs.shell.local_socket import LocalSocket
 from gcs.shell.stations import Description
 
@@ -167,6 +168,21 @@ class TestWhichStation:
         with pytest.raises(ExitError) as none:
             the_station(("udpin://127.0.0.1:47001",))
         assert none.value.exit_code == ExitCode.NO_VEHICLE
+
+    def test_a_folder_of_somebody_else_is_told_and_no_link_is_waited_for(
+        self, runtime: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        runtime.mkdir()
+        runtime.chmod(0o777)
+        home = runtime.parent / "home"
+        monkeypatch.setattr(stations, "folders_of", lambda: [runtime, home])
+        with pytest.raises(ExitError, match=r"can be found: .* can be used by other") as none:
+            station_for([DEFAULT], anywhere=True)
+        assert "--link" in none.value.hint
+        assert station_for([DEFAULT]) is None, "a link that is named is opened"
+        local = LocalSocket([DEFAULT], "", keep=False, folder=home)
+        assert station_for([DEFAULT], anywhere=True) == local.description
+        local.close()
 
     def test_it_is_found_by_its_link(self, listening: list[LocalSocket]) -> None:
         found = station_on(["udpin://127.0.0.1:47001"])

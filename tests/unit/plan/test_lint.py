@@ -277,6 +277,24 @@ def test_a_fence_that_is_no_polygon(corners: list[list[float]], words: str) -> N
     assert words in found.what
 
 
+@pytest.mark.parametrize(
+    ("corners", "told"),
+    [
+        ([[80, 0], [80, 90], [80, 180], [80, -90]], ["it goes round a pole"]),
+        ([[-80, 0], [-80, -120], [-80, 120], [-80, 0]], ["it goes round a pole"]),
+        ([[10, 179], [10, -179], [11, 180]], []),  # over the date line alone
+    ],
+)
+def test_a_fence_round_a_pole_is_called_so(corners: list[list[float]], told: list[str]) -> None:
+    """As degrees of a plane its edges would lie on each other."""
+    document = box()
+    document["geoFence"]["polygons"] = [{"inclusion": True, "polygon": corners, "version": 1}]
+
+    found = [each for each in lint(read_json(document), "px4") if each.level is Level.ERROR]
+
+    assert [each.what.partition(",")[0] for each in found] == told
+
+
 def test_the_real_file_that_is_underground_is_called_so() -> None:
     path = elsewhere("wpl", "mission_planner_sample.txt")
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from gcs.session.client_frames import UPGRADES_NS, ClientFrames
 from gcs.wire import messages as m
 from gcs.wire.codec import FrameWriter
-from gcs.wire.rewrite import as_mavlink1
+from gcs.wire.rewrite import as_mavlink1, seq_of
 from gcs.wire.signing import SecretKey, Signer
 
 KEY = SecretKey(bytes(range(32)))
@@ -53,3 +53,24 @@ def test_one_behind_the_other_is_what_they_are_one_by_one(
         if turn < len(answered_for):
             raw = FrameWriter(*answered_for[turn]).write(m.MissionCurrent(turn))
             assert together.answer(raw, now_ns) == one_by_one.answer(raw, now_ns)
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=30), st.booleans())
+def test_what_is_left_out_leaves_no_gap(is_left_out: list[bool], v1_alone: bool) -> None:
+    """Frames of one component, some of them left out, and an answer in its name behind them."""
+    client, writer = ClientFrames(), FrameWriter(1, 1)
+    writer.seq = 250
+    if v1_alone:
+        older = as_mavlink1(FrameWriter(255, 190).write(m.Heartbeat(0, 6, 8, 0, 4, 3)))
+        assert older is not None
+        client.passed([], 0)
+        client.spoke(older)
+    raws = [writer.write(m.MissionCurrent(number)) for number, _ in enumerate(is_left_out)]
+    left_out = [raw for raw, out in zip(raws, is_left_out, strict=True) if out]
+    passed = client.passed(raws, UPGRADES_NS, left_out)
+    assert len(passed) == len(raws) - len(left_out)
+    answer = client.answer(writer.write(m.MissionCurrent(0)), UPGRADES_NS)
+    assert answer is not None
+    assert [seq_of(raw) for raw in (*passed, answer)] == [
+        (250 + number) & 0xFF for number in range(len(passed) + 1)
+    ]

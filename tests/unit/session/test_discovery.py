@@ -25,6 +25,7 @@ class Script:
 
 def ask(script: Script, seconds: float = 0.0) -> list[CommandLong]:
     script.now_ns += round(seconds * SECOND_NS)
+    script.telemetry.heard_ns = script.now_ns
     return list(script.discovery.missing(script.telemetry, script.now_ns))
 
 
@@ -120,13 +121,30 @@ def test_positions_that_stop_are_asked_for_again_with_all_else_and_ever_more_sel
 
 def test_that_they_stopped_is_told_once() -> None:
     script = silent(Script())
-    discovery, telemetry = script.discovery, script.telemetry
-    assert discovery.silence(telemetry, script.now_ns + 2 * SECOND_NS) == ""
-    assert "sends no positions" in discovery.silence(telemetry, script.now_ns + 3 * SECOND_NS)
-    assert discovery.silence(telemetry, script.now_ns + 9 * SECOND_NS) == ""
-    telemetry.position_came_ns = script.now_ns + 10 * SECOND_NS
-    assert discovery.silence(telemetry, script.now_ns + 11 * SECOND_NS) == ""
-    assert discovery.silence(telemetry, script.now_ns + 20 * SECOND_NS) != ""
+    assert heard_after(script, 2) == ""
+    assert "sends no positions" in heard_after(script, 1)
+    assert heard_after(script, 6) == ""
+    script.telemetry.position_came_ns = script.now_ns + SECOND_NS
+    assert heard_after(script, 2) == ""
+    assert heard_after(script, 9) != ""
+
+
+def heard_after(script: Script, seconds: int) -> str:
+    """What is told of missing positions when a frame has come."""
+    script.now_ns += seconds * SECOND_NS
+    script.telemetry.heard_ns = script.now_ns
+    return script.discovery.silence(script.telemetry)
+
+
+def test_a_vehicle_that_is_not_heard_has_not_stopped_its_positions() -> None:
+    """They are missing from when it is heard again, and come with what else it sends."""
+    script = silent(Script())
+    ask(script, 0.5)
+    script.now_ns += 10 * SECOND_NS
+    assert script.discovery.silence(script.telemetry) == ""
+    script.telemetry.heard_again_ns = script.now_ns
+    assert heard_after(script, 0) == heard_after(script, 2) == ""
+    assert "sends no positions" in heard_after(script, 1)
 
 
 @pytest.mark.parametrize(

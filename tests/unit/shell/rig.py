@@ -24,6 +24,7 @@ from gcs.shell.recording import RecorderNews, Recording
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 from gcs.shell.sockets import Link
+from gcs.shell.sockets.base import News
 
 MS = 1_000_000
 TICK_NS = 50 * MS
@@ -115,9 +116,9 @@ class PaperLink(Link):
         self._came += datagrams
         self._far.send(b"!")
 
-    def tell(self, line: str) -> None:
+    def tell(self, line: str, *, trouble: bool = False) -> None:
         """News of the link itself, for the next poke."""
-        self._news.append(line)
+        self._news.append(News(line, trouble))
 
     def fileno(self) -> int:
         return self._near.fileno() if self.open else -1
@@ -139,7 +140,7 @@ class PaperLink(Link):
     def leave_out(self, data: bytes, silent_ns: int) -> None:
         self.left_out.append(data)
 
-    def poke(self, now_ns: int) -> list[str]:
+    def poke(self, now_ns: int) -> list[News]:
         self.pokes_ns.append(now_ns)
         if self.due_ns is not None and now_ns >= self.due_ns:
             self.due_ns = None

@@ -314,8 +314,10 @@ def test_a_link_that_is_due_is_poked_though_nothing_came(rig: Rig) -> None:
 
 def test_what_a_link_tells_of_itself_follows_what_it_brought(rig: Rig) -> None:
     rig.links[0].tell("127.0.0.1:5 sends to us")
+    rig.links[0].tell("127.0.0.1:6, too", trouble=True)
     rig.run(lambda: rig.links[0].bring(b"first"))
-    assert rig.core.inputs[:2] == [FIRST, LinkEvent(0, "127.0.0.1:5 sends to us")]
+    told = [LinkEvent(0, "127.0.0.1:5 sends to us"), LinkEvent(0, "127.0.0.1:6, too", trouble=True)]
+    assert rig.core.inputs[:3] == [FIRST, *told]
 
 
 # ------------------------------------------------------------------------------ operator

@@ -93,7 +93,7 @@ def test_one_that_is_unplugged_is_told_once_and_watched_no_more(plug: Plug) -> N
     assert line.drain(9) == []
     assert line.fileno() == -1
     (news,) = line.poke(1)
-    assert "lost" in news
+    assert "lost" in news.text
     assert line.drain(9) == []
     assert line.poke(2) == []
     line.send(b"def")
@@ -110,7 +110,7 @@ def test_it_is_opened_again_within_a_second(plug: Plug) -> None:
     assert due_ns(line) == 1 + REOPEN_NS
     assert line.poke(REOPEN_NS) == []
     (news,) = line.poke(1 + REOPEN_NS)
-    assert "there again" in news
+    assert "there again" in news.text
     assert due_ns(line) is None
     os.write(plug.master, b"abc")
     assert line.drain(9) == [b"abc"]

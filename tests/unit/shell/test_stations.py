@@ -153,6 +153,24 @@ def test_where_somebody_else_has_made_that_folder_it_is_one_of_the_user_s_home(
     assert stations.folder_of({}) == tmp_path / "home" / ".mavgate"
 
 
+def test_a_station_is_found_whether_somebody_else_s_folder_is_there_or_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was begun while that was there, or before: both places are looked in."""
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    taken = tmp_path / f"mavgate-{os.getuid()}"
+    taken.mkdir()
+    taken.chmod(0o777)
+    local = listen(stations.folder_of({}))
+    (found,) = stations.running(*stations.folders_of({}))
+    assert found.endpoints == [LINK]
+    taken.rmdir()
+    assert stations.folder_of({}) == taken, "where the next one goes"
+    assert stations.running(*stations.folders_of({})) == [found]
+    local.close()
+
+
 def test_vehicle_and_log_are_written_when_they_change_and_only_then(tmp_path: Path) -> None:
     folder = tmp_path / "mavgate"
     local = listen(folder)
