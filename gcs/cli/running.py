@@ -24,19 +24,12 @@ def station_for(links: Sequence[str], *, anywhere: bool = False) -> Description 
     """The running station that has one of `links` open.
 
     `anywhere`: if none has, the only one that runs will do, whatever its link is.  Raises
-    ExitError if there are several then, or if none is found where one may run all the same.
+    ExitError if there are several then.
     """
     found = station_on(links)
     if found is not None or not anywhere:
         return found
     everywhere = running_stations()
-    unsafe = "" if everywhere else why_no_station_is_found()
-    if unsafe:
-        hint = (
-            "where none runs, name the vehicle's link with --link; else remove that folder, or set "
-            "XDG_RUNTIME_DIR to a folder of your own, and start the station again"
-        )
-        raise ExitError(ExitCode.NO_VEHICLE, f"no running station can be found: {unsafe}", hint)
     if len(everywhere) > 1:
         text = "; ".join(described_shortly(each) for each in everywhere)
         raise ExitError(ExitCode.USAGE, f"{len(everywhere)} stations are running: {text}", HINT)
@@ -44,9 +37,15 @@ def station_for(links: Sequence[str], *, anywhere: bool = False) -> Description 
 
 
 def others_running(links: Sequence[str]) -> list[str]:
-    """What to say to somebody who has named no link, where stations run on other ones."""
+    """What to say to somebody who has named no link, where stations run on other ones, or may run
+    and not be found."""
     if list(links) != [DEFAULT_LINK]:
         return []
+    unsafe = why_no_station_is_found()
+    if unsafe:
+        return [
+            f"a station that runs may not be found: {unsafe}; remove it, or set XDG_RUNTIME_DIR"
+        ]
     return [
         f"a station runs: process {described_shortly(each)}; to go through it, name its link: "
         f"--link {each.endpoints[0]}"

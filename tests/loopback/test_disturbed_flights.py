@@ -7,7 +7,9 @@ import random
 
 import pytest
 
+from gcs.gate.airspace.stopping import travel_m
 from gcs.gate.condition import Condition
+from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import Control, State
 from gcs.session import inputs
 from tests.loopback import pymavlink_decoder
@@ -128,7 +130,10 @@ def test_a_predicted_breach_is_braked_in_the_same_tick(personality: Personality)
     flight.run(4.0)
     assert flight.is_in(State.HOLDING)
     assert flight.vehicle.mode_name == HOLDS[personality]
-    assert flight.truth_enu()[0] < 6.5
+    # The lab trusts a hold with less; this is what one takes, as recorded.
+    taken = DEFAULT.braking_of(personality)
+    taken_m = travel_m(4.5, taken.react_s, taken.a_brake_h_m_s2) + taken.position_error_h_m
+    assert flight.truth_enu()[0] < 3.0 + taken_m
 
 
 @both_personalities
