@@ -441,12 +441,12 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "ATC_ANG_RLL_P",
-        {3.0: pytest.approx(0.07, rel=0.12), 6.0: pytest.approx(0.129, rel=0.12)},
+        {3.0: pytest.approx(0.052, rel=0.12), 6.0: pytest.approx(0.099, rel=0.12)},
         fly.answer("qx", fly.tips(fly.turned(roll=20.0)), 0.12),
     ),
     Case(
         "ATC_ANG_PIT_P",
-        {3.0: pytest.approx(0.07, rel=0.12), 6.0: pytest.approx(0.129, rel=0.12)},
+        {3.0: pytest.approx(0.052, rel=0.12), 6.0: pytest.approx(0.099, rel=0.12)},
         fly.answer("qy", fly.tips(fly.turned(pitch=20.0)), 0.12),
     ),
     Case(
