@@ -128,4 +128,5 @@ class Flight:
     sharpness_d: float = 5.0
     brake_share: float = 0.6  # of the acceleration is planned for braking, the rest is for the lag
     brakes_by_jerk: bool = False  # plans a stop with that jerk, as PX4's own flights do
+    brakes_ahead: bool = False  # feeds the planned braking forward, as ArduCopter's own flights do
     lead_max_m: float = 4.0  # so far ahead of the vehicle the reference stands and waits

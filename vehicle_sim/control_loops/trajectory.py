@@ -32,7 +32,7 @@ class Law(Enum):
 
     STEADY = "of this vehicle, for what no autopilot shapes"
     PX4 = "with room to reverse the acceleration at the jerk (`speed_by_jerk`)"
-    COPTER = "acceleration = jerk / acceleration of what is missing of the velocity"
+    COPTER = "acceleration = jerk / acceleration of what is missing; the braking is fed forward"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +74,13 @@ def approach_speed(distance_m: float, accel_m_s2: float, approach_p: float) -> f
         if distance_m <= near
         else sqrt(2.0 * accel_m_s2 * (distance_m - 0.5 * near))
     )
+
+
+@kernel
+def approach_fall(speed_m_s: float, accel_m_s2: float, approach_p: float) -> float:
+    """How much slower `approach_speed` is a metre nearer, where it is `speed_m_s` [1/s]."""
+    near = approach_p * speed_m_s <= accel_m_s2
+    return approach_p if near else accel_m_s2 / speed_m_s
 
 
 @kernel
@@ -149,6 +156,9 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
     dd = f.goal_d - ref_d
     flat = sqrt(dn * dn + de * de)
     drop = dd if dd >= 0.0 else -dd
+    vn = f.ref_vel_n
+    ve = f.ref_vel_e
+    vd = f.ref_vel_d
     top = f.speed_m_s
     accel = f.accel_m_s2
     accel_d = f.accel_vertical_m_s2
@@ -162,25 +172,34 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
         if slow
         else approach_speed(flat, f.brake_share * accel, f.approach_p)
     )
+    # With the braking fed forward: less by what the plan slows down while that is taken up.
+    ahead = f.brakes_ahead
+    nears = ((vn - f.goal_vel_n) * dn + (ve - f.goal_vel_e) * de) / flat if flat > 0.0 else 0.0
+    fall = approach_fall(speed, f.brake_share * accel, f.approach_p)
+    led = speed - fall * nears / f.sharpness if ahead and nears > 0.0 else speed
+    led = top if led > top else -top if led < -top else led
     speed = top if speed > top else speed
+    brake = f.brake_share * (accel_up if dd > 0.0 else accel_d)
     rise = (
         f.kp_pos_z * drop
         if direct
         else speed_by_jerk(drop, accel_d if dd > 0.0 else accel_up, jerk)
         if slow
-        else approach_speed(
-            drop, f.brake_share * (accel_up if dd > 0.0 else accel_d), f.approach_p_d
-        )
+        else approach_speed(drop, brake, f.approach_p_d)
     )
     cap = f.descend_m_s if dd > 0.0 else f.climb_m_s
+    nears = vd - f.goal_vel_d if dd > 0.0 else f.goal_vel_d - vd
+    fall = approach_fall(rise, brake, f.approach_p_d)
+    led_d = rise - fall * nears / f.sharpness_d if ahead and nears > 0.0 else rise
+    led_d = cap if led_d > cap else -cap if led_d < -cap else led_d
     rise = cap if rise > cap else rise
     # On a line the faster of the horizontal and the vertical motion waits for the slower.
     line = f.straight and to_flat and to_down and flat > 0.0 and drop > 0.0
     flat_waits = line and flat * rise < drop * speed
     down_waits = line and not flat_waits
-    speed = flat * rise / drop if flat_waits else speed
-    rise = drop * speed / flat if down_waits else rise
-    scale = speed / flat if flat > 0.0 else 0.0
+    led = flat * rise / drop if flat_waits else led
+    led_d = drop * speed / flat if down_waits else led_d
+    scale = led / flat if flat > 0.0 else 0.0
 
     # At a velocity: the one that is asked for, within the limits.
     ask_n = f.goal_vel_n
@@ -194,12 +213,9 @@ def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
 
     want_n = ask_n + dn * scale if to_flat else ask_n * bound
     want_e = ask_e + de * scale if to_flat else ask_e * bound
-    want_d = ask_d + (rise if dd > 0.0 else -rise) if to_down else ask_bound
+    want_d = ask_d + (led_d if dd > 0.0 else -led_d) if to_down else ask_bound
 
     # The acceleration that takes it up; round a centre, with what bends the path.
-    vn = f.ref_vel_n
-    ve = f.ref_vel_e
-    vd = f.ref_vel_d
     turns = f.turn_rad_s != 0.0
     bend = f.turn_rad_s * f.turn_rad_s
     sharp = f.sharpness

@@ -117,7 +117,6 @@ ARDUPILOT: Final[dict[str, str]] = {
     "first PARAM_VALUE: ours later": UNASKED,
     "first FENCE_STATUS: ours later": "chance: enabled for 0.16 s, told every 0.25 s",
     "rate descent, HEARTBEAT: ours more": "the recording lacks the one of 118 s",
-    "figure: LAND sent to ON_GROUND": "0.3 s sooner, of which 0.2 s may be the message's rate",
 }
 
 KNOWN: Final[dict[Personality, dict[str, str]]] = {"px4": PX4, "ardupilot": ARDUPILOT}

@@ -32,9 +32,17 @@ class FlyTo:
 
 @dataclass(frozen=True, slots=True)
 class FlyVelocity:
+    """At a velocity.
+
+    `anew`: horizontally from the vehicle's own motion, without an acceleration, as ArduCopter
+    begins where its position controller is initialised.  All that the vehicle leans for then is
+    taken for what it needs to hold a speed, and unlearnt as the speed changes.
+    """
+
     v_ned: Vec3
     limits: MotionLimits
     direct: bool = False
+    anew: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,6 +35,7 @@ from vehicle_sim.control_loops.flight import (
     Flight,
 )
 from vehicle_sim.control_loops.trajectory import QUICK_M_S3, Law, MotionLimits
+from vehicle_sim.numerics.gravity import GRAVITY_M_S2
 from vehicle_sim.numerics.vectors import Quat, Vec3
 
 LAND_S: Final[dict[Personality, float]] = {"px4": 1.0, "ardupilot": 0.6}
@@ -43,8 +44,6 @@ begins earlier than `guidance.feel_ground` can tell."""
 _SHARPNESS: Final = 5.0  # 1/s: these three of `Flight`, where no autopilot's law says otherwise
 _APPROACH_P: Final = 1.5  # 1/s
 _BRAKE_SHARE: Final = 0.6
-_COPTER_BRAKE_SHARE: Final = 0.75
-"""With this its legs end as recorded: 0.2 to 0.8 m too far, braking by 2.6 to 2.9 m/s^2."""
 
 
 def heading_of(q_ned_from_frd: Quat) -> float:
@@ -184,6 +183,7 @@ class FlightControl:
         going_on = isinstance(last, FlyCircle) and isinstance(demand, FlyCircle)
         self._demand = demand
         f = self.flight
+        leans = f.attitude != BY_RATES  # else the setpoint of the attitude is an old one
         f.attitude = BY_MOTION
         f.turn_rad_s = 0.0
         f.straight = f.height_free = False
@@ -200,6 +200,8 @@ class FlightControl:
                 if demand.v_ned != STILL:
                     self._quicken()
             case FlyVelocity():
+                if demand.anew and not (isinstance(last, FlyVelocity) and last.anew):
+                    self._begin_anew(s, leans)
                 self._go(AT_VELOCITY, AT_VELOCITY, s.pos_ned, demand.v_ned)
                 self._limit(demand.limits)
             case FlyAtHeight():
@@ -257,6 +259,20 @@ class FlightControl:
             f.thrust = demand.thrust
         f.acc_n, f.acc_e, f.acc_d = demand.a_n, demand.a_e, 0.0
 
+    def _begin_anew(self, s: Situation, leans: bool) -> None:
+        """Horizontally from where the vehicle is, as fast as it is: see `FlyVelocity`."""
+        f = self.flight
+        f.ref_n, f.ref_e, _ = s.pos_ned
+        f.ref_vel_n, f.ref_vel_e, _ = s.v_ned
+        f.ref_acc_n = f.ref_acc_e = 0.0
+        if not leans:
+            return
+        w, x, y, z = f.sp_w, f.sp_x, f.sp_y, f.sp_z
+        north, east = -2.0 * (x * z + w * y), -2.0 * (y * z - w * x)
+        up, flat = 1.0 - 2.0 * (x * x + y * y), sqrt(north * north + east * east)
+        scale = 1.0 / up if flat < f.tilt_max * up else f.tilt_max / max(flat, 1e-6)
+        f.int_n, f.int_e = scale * GRAVITY_M_S2 * north, scale * GRAVITY_M_S2 * east
+
     def _limit(self, limits: MotionLimits) -> None:
         f = self.flight
         f.speed_m_s = limits.speed_m_s
@@ -270,8 +286,9 @@ class FlightControl:
         if limits.law is Law.COPTER:
             f.sharpness = limits.jerk_m_s3 / limits.accel_m_s2
             f.sharpness_d = limits.jerk_m_s3 / limits.accel_vertical_m_s2
-            f.approach_p, f.approach_p_d = 0.5 * f.sharpness, 0.5 * f.sharpness_d
-            f.brake_share = _COPTER_BRAKE_SHARE
+            f.approach_p, f.approach_p_d = f.sharpness, f.sharpness_d
+            f.brakes_ahead = True
+            f.brake_share = 1.0
         else:
             self._steady()
 
@@ -285,6 +302,7 @@ class FlightControl:
         f.sharpness = f.sharpness_d = _SHARPNESS
         f.approach_p = f.approach_p_d = _APPROACH_P
         f.brake_share = _BRAKE_SHARE
+        f.brakes_ahead = False
 
     def _fly_attitude(self, demand: FlyAttitude) -> None:
         f = self.flight

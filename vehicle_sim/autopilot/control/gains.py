@@ -83,6 +83,8 @@ _LEAN: dict[Personality, tuple[str, float]] = {
     "ardupilot": ("ANGLE_MAX", 0.01),
 }
 """The largest lean, and its factor to degrees."""
+_LEAN_S: dict[Personality, str | None] = {"px4": None, "ardupilot": "ATC_INPUT_TC"}
+"""The time constant at which a lean that is asked for is taken up, where one is."""
 _NO_AID_US: dict[Personality, str | None] = {"px4": "EKF2_NOAID_TOUT", "ardupilot": None}
 # PX4: MPC_THR_MIN and LNDMC_LOW_T_THR (0.3, by memory) of the way from it to MPC_THR_HOVER, with
 # their defaults of 0.12 and 0.5.  ArduCopter's as the time from touch-down to disarming has it.
@@ -96,6 +98,11 @@ def write_gains(parameters: Parameters, flight: Flight, est: Estimated, believed
     designed = Flight()
     tune(designed, believed)
     designed.kp_rate_yaw, flight.ki_rate_yaw = _YAW_RATE_GAINS[parameters.personality]
+    lean_s = _LEAN_S[parameters.personality]
+    if lean_s is not None and get(lean_s) > 0.0:
+        most = 1.0 / get(lean_s)
+        designed.kp_roll = min(designed.kp_roll, most)
+        designed.kp_pitch = min(designed.kp_pitch, most)
     for name, field in _GAINS[parameters.personality].items():
         ratio = get(name) / parameters.designed(name)
         setattr(flight, field, ratio * getattr(designed, field))

@@ -95,7 +95,8 @@ class Brake(Hold):
     """ArduCopter's BRAKE: a velocity of 0, from 7.5 m/s^2 at the jerk of all its flights.
 
     So the velocity falls by 5 / 7.5 of itself in a second: recorded stops went on for 3.1 m from
-    2 m/s, 9.0 m from 5 and 20.5 m from 10, and for 1.5 m from 1 m/s upwards.
+    2 m/s, 9.0 m from 5 and 20.5 m from 10, and for 1.5 m from 1 m/s upwards.  It begins anew
+    (mode_brake.cpp), so that one that still gained went on no farther: 9.0 m from 5 m/s.
     """
 
     __slots__ = ()
@@ -103,7 +104,7 @@ class Brake(Hold):
     def update(self, s: Situation, turner: Turner) -> Demand:
         most = _BRAKE_M_S2
         limits = replace(s.limits, accel_m_s2=most, accel_vertical_m_s2=most, accel_up_m_s2=most)
-        return FlyVelocity(STILL, limits)
+        return FlyVelocity(STILL, limits, anew=True)
 
 
 class Level:
