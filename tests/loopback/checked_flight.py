@@ -16,6 +16,7 @@ from unittest import mock
 from gcs import ipc
 from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.questions.braking import Breach
+from gcs.gate.airspace.questions.excursions import WayBack
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.effects import Effect
 from gcs.gate.inputs import Input
@@ -100,7 +101,17 @@ class Witness:
                 self._note(v, Cleared(), breach.brake_pos_ned)
             return breach
 
+        way_back = Verifier.way_back
+
+        def heard_way_back(v: Verifier, pos_ned: Vec3, v_ned: Vec3) -> Any:
+            way = way_back(v, pos_ned, v_ned)
+            if isinstance(way, WayBack):
+                self.stops.add(float32(way.to_ned))
+                self._note(v, Cleared(), way.to_ned)
+            return way
+
         with (
+            mock.patch.object(Verifier, "way_back", heard_way_back),
             mock.patch.object(Gate, "handle", judged),
             mock.patch.object(Verifier, "goal", heard_goal),
             mock.patch.object(Verifier, "hold_point", heard_hold),

@@ -92,7 +92,8 @@ def test_no_client_ends_the_station_with_frames_that_it_cannot_take() -> None:
 
 @each
 def test_no_client_makes_the_gate_blind(personality: Personality) -> None:
-    """Whatever a client asks not to be sent, the gate goes on seeing mode, arming and home."""
+    """Whatever a client asks not to be sent, the gate goes on seeing position, mode, arming and
+    home; the client itself is sent no more of it."""
     flight = BridgedFlight(personality)
     client = flight.join()
     flight.connected()
@@ -105,7 +106,11 @@ def test_no_client_makes_the_gate_blind(personality: Personality) -> None:
     flight.beating(4)
     assert flight.now_ns > heard_at_ns
     names = {one.message.get_type() for one in client.heard}
-    assert {"HEARTBEAT", "LOCAL_POSITION_NED", "ATTITUDE", "HOME_POSITION"} <= names
+    assert {"HEARTBEAT", "HOME_POSITION"} <= names
+    assert not {"LOCAL_POSITION_NED", "ATTITUDE"} & names
+    seen = flight.session.gate.memory.pos_ns
+    assert seen is not None
+    assert flight.now_ns - seen < 200_000_000
     assert client.ask(400, 1, within_s=5) == 0
     assert flight.session.telemetry is not None
     assert flight.session.telemetry.armed

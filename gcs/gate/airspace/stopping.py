@@ -26,7 +26,7 @@ class StopBy(Enum):
     """How a vehicle comes to rest; the values are parts of names and sentences."""
 
     HOLD = "hold"  # it is told its hold mode
-    SETPOINT = "setpoint"  # it is sent on to where it was sent before, then told its hold mode
+    SETPOINT = "setpoint"  # it is sent a position at which to stop, then told its hold mode
     ITSELF = "itself"  # on a path of its own
 
 

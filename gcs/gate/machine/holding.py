@@ -114,12 +114,8 @@ def brake(turn: Turn) -> None:
     if breach.brake_pos_ned is None:
         memory.hold = None
         return
-    at_ned = breach.brake_pos_ned
-    goal = memory.goal or memory.hold
-    if breach.by is StopBy.SETPOINT and goal is not None:
-        at_ned = goal.pos_ned  # no farther out than where it is sent already
-    memory.hold = Goal(at_ned, None, breach.numbers)
-    turn.out.append(SetpointDraft(memory.hold, f"brake at {place(at_ned)}"))
+    memory.hold = Goal(breach.brake_pos_ned, None, breach.numbers)
+    turn.out.append(SetpointDraft(memory.hold, f"brake at {place(breach.brake_pos_ned)}"))
 
 
 def start_grace(turn: Turn) -> None:

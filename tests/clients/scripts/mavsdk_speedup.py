@@ -65,7 +65,9 @@ def main(url: str, personality: str, factor: float, wall_s: float) -> None:
         # PX4 has no home among its items.
         if personality == "px4":
             items = items[1:]
-            items[-1].frame = 2  # it refuses a return in a frame of places
+            for each in items:
+                if each.command in (CHANGE_SPEED, RETURN):
+                    each.frame = 2  # it refuses items without a place in a frame of places
             for seq, each in enumerate(items):
                 each.seq, each.current = seq, int(seq == 0)
         plugin.upload_mission(items)

@@ -275,15 +275,15 @@ def test_ardupilot_without_sticks_that_it_had(action: int, mode: str) -> None:
 @pytest.mark.parametrize("action", [0, 1, 3])
 def test_ardupilots_receiver_has_the_sticks_after_overrides(action: int) -> None:
     """As recorded (B5): its throttle at the bottom sinks a LOITER by 2.5 m/s, all the way down."""
-    flight = aloft("ardupilot", 8.0, FS_THR_ENABLE=action)
+    flight = aloft("ardupilot", 12.0, FS_THR_ENABLE=action)
     flight.vehicle.set_mode_kind("hold")
     hands_off(flight, 2.9)
-    assert flight.up_m == pytest.approx(8.0, abs=0.5)
+    assert flight.up_m == pytest.approx(12.0, abs=0.5)
     before = len(flight.texts())
     hands_off(flight, 3.1)
-    flight.fly(2.0)
+    flight.fly(3.0)
     assert flight.vehicle.truth.v_ned[2] == pytest.approx(2.5, abs=0.1)
-    flight.fly(8.0, lambda: flight.landed() is Landed.ON_GROUND)
+    flight.fly(10.0, lambda: flight.landed() is Landed.ON_GROUND)
     assert flight.vehicle.mode_name == "LOITER"
     assert flight.vehicle.armed
     assert flight.texts()[before:] == []

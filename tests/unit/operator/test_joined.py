@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import select
 import socket
 import sys
@@ -13,7 +14,7 @@ from queue import Queue
 import pytest
 
 from gcs import ipc
-from gcs.cli.running import station_for, the_station
+from gcs.cli.running import others_running, station_for, the_station
 from gcs.exit_codes import ExitCode
 from gcs.operator.client import StationEnded, StationEvent
 from gcs.operator.errors import ExitError
@@ -169,17 +170,16 @@ class TestWhichStation:
             the_station(("udpin://127.0.0.1:47001",))
         assert none.value.exit_code == ExitCode.NO_VEHICLE
 
-    def test_a_folder_of_somebody_else_is_told_and_no_link_is_waited_for(
+    def test_a_folder_of_somebody_else_is_told_and_hinders_no_stop(
         self, runtime: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         runtime.mkdir()
         runtime.chmod(0o777)
         home = runtime.parent / "home"
         monkeypatch.setattr(stations, "folders_of", lambda: [runtime, home])
-        with pytest.raises(ExitError, match=r"can be found: .* can be used by other") as none:
-            station_for([DEFAULT], anywhere=True)
-        assert "--link" in none.value.hint
-        assert station_for([DEFAULT]) is None, "a link that is named is opened"
+        assert station_for([DEFAULT], anywhere=True) is None, "a stop goes on, by the link"
+        [told] = others_running([DEFAULT])
+        assert re.search("may not be found: .* can be used by other", told)
         local = LocalSocket([DEFAULT], "", keep=False, folder=home)
         assert station_for([DEFAULT], anywhere=True) == local.description
         local.close()
