@@ -37,6 +37,7 @@ from gcs.gate.machine.rules import BACK, STAY, Branch, Next, Reply
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
 from gcs.gate.machine.turn import CommandDraft, Draft, SampleDraft, SetpointDraft, Turn
 from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, FlightMode, LandedState, State
 
 MOTION: Final = frozenset(CommandKind) - {
@@ -56,6 +57,10 @@ MUST: Final[Mapping[Severity, Event]] = MappingProxyType(
     }
 )
 """What a severity demands.  At TERMINATE the gate commands no more than landing."""
+
+
+GOALS_WAIT_IN: Final = frozenset({State.HOVERING, State.VERIFYING, State.MOVING})
+"""Where a go-to may wait for its tick; one that waits when another state is entered is refused."""
 
 
 class ImpossibleError(Exception):
@@ -275,6 +280,8 @@ class Gate:
             return
         if before is State.STALE:
             memory.back_to = memory.grace_until_ns = None
+        if memory.state not in GOALS_WAIT_IN:
+            turn.refuse_pending(Refusal(Code.NOT_FLYING, "the vehicle does not hover any more"))
         turn.out.append(
             Transition(before, memory.state, event.value, memory.control, turn.severity)
         )

@@ -203,7 +203,7 @@ FAULTS = [
         Event.GOAL_REFUSED,
         (Branch(do=(Action.FLY_GOAL,), to=State.MOVING),),
         1,
-        "tick",
+        "wait: deadline",
     ),
     planted(
         "a goal is flown on in a fence that refuses it",
