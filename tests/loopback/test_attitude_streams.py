@@ -161,7 +161,7 @@ def test_a_yaw_rate_beside_it_turns_the_nose(personality: Personality) -> None:
 def test_at_the_fence_it_is_held_inside_and_flown_back(
     personality: Personality, roll_deg: float, pitch_deg: float, more_thrust: float
 ) -> None:
-    flight, _, stream = flying(personality, SHORT, up_m=27.0 - 7.0 * more_thrust)
+    flight, _, stream = flying(personality, SHORT, up_m=20.0 if more_thrust > 0.5 else 27.0)
     blow(flight, 3.0, 2.0)
     full = 0.03 if personality == "px4" else 0.5
     """As a share of full thrust; as a climb rate."""
