@@ -122,7 +122,8 @@ class Scene:
             case ipc.EndingEvent():
                 self.progress = None
                 self._note_outcome(event)
-                self._show_answer(self.label(event), event.ended, event.code, event.sentence)
+                if not self._says_it_is_taken(event):
+                    self._show_answer(self.label(event), event.ended, event.code, event.sentence)
             case ipc.ProgressEvent():
                 # The last step of a transfer needs no ending of the request to be over.
                 self.progress = None if event.done >= event.total > 0.0 else event
@@ -154,6 +155,11 @@ class Scene:
         old = self.now_ns - self.answer.given_ns > ANSWER_NS
         if old and self.answer.kind not in (ACCEPTED, REFUSED):
             self.answer = Answer()
+
+    def _says_it_is_taken(self, event: ipc.EndingEvent) -> bool:
+        """The taking of control is complete, and a snapshot that came before has said it better."""
+        taken = event.word == "station_take" and event.ended == COMPLETE
+        return taken and self.answer.kind == TAKEN_OVER
 
     def _note_outcome(self, event: ipc.EndingEvent) -> None:
         request = self._requests.get(event.id)

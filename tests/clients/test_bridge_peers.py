@@ -14,6 +14,7 @@ from gcs.gate.refusal import Code
 from tests.clients.bridged_flight import bridged, end_peer, start_peer
 from tests.clients.mavutil_client import in_order
 from tests.shares import one_in
+from tests.system.patience import until
 from vehicle_sim.testing.process import Personality
 
 pytestmark = pytest.mark.system
@@ -123,8 +124,10 @@ def test_attitudes_of_mavsdk_fly_and_cannot_leave(tmp_path: Path) -> None:
 def test_two_at_once_and_one_in_control(personality: Personality, tmp_path: Path) -> None:
     """Both on one port.  The other one reads everything, and is told who is in control."""
     with bridged(personality, tmp_path) as flight:
-        in_control = start_peer("mavsdk", f"udpout://{flight.clients[0]}", flight, "fly", "land")
         other = start_peer("pymavlink", f"udpout:{flight.clients[0]}", flight, "look_on")
+        # Who connects later is not told of what was before, but in refusals.
+        until(lambda: any("has connected" in line for line in flight.said), "it looks on")
+        in_control = start_peer("mavsdk", f"udpout://{flight.clients[0]}", flight, "fly", "land")
         looked, flown = end_peer(other), end_peer(in_control)
     print(*looked, *flown, sep="\n")
     in_order(flown, *FLOWN["mavsdk"], "^landed and disarmed")

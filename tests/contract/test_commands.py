@@ -27,6 +27,11 @@ from vehicle_sim.services.profile import PROFILES
 
 either = pytest.mark.parametrize("personality", BOTH)
 
+NEVER_ENDED = {"px4": {212}, "ardupilot": set[int]()}
+"""DO_AUTOTUNE_ENABLE: the one ack that was recorded of a PX4 is IN_PROGRESS; no tuning follows."""
+UNHEARD_AS_SENT = {"px4": {310}, "ardupilot": set[int]()}
+"""ACTUATOR_TEST of no actuator: recorded of a PX4, which answers others."""
+
 
 def mode(client: Client) -> str:
     """The mode that the last heartbeat tells, by the autopilot's own name."""
@@ -111,10 +116,10 @@ def test_two_senders_of_one_command_are_each_answered(personality: Personality) 
 
 @either
 def test_nothing_is_ever_left_in_progress(personality: Personality) -> None:
-    """A final ack for each frame that was answered IN_PROGRESS."""
+    """A final ack for each frame that was answered IN_PROGRESS, but for those listed."""
     client = connected(personality)
     client.take_off(5.0)
-    unheard = PROFILES[personality].unheard
+    unheard = PROFILES[personality].unheard | UNHEARD_AS_SENT[personality]
     for command in range(600):
         if command in (185, 246, 400, 420):
             continue
@@ -126,6 +131,9 @@ def test_nothing_is_ever_left_in_progress(personality: Personality) -> None:
         if results[0] == IN_PROGRESS:
             client.sky.run(30.0)
             finals = [ack.result for ack in client.all("COMMAND_ACK")]
+            if command in NEVER_ENDED[personality]:
+                assert finals == [IN_PROGRESS]
+                continue
             assert len(finals) == 2
             assert finals[-1] != IN_PROGRESS
 

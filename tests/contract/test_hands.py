@@ -159,8 +159,9 @@ def test_ardupilots_velocity_lasts_three_seconds() -> None:
 
 @either
 def test_sticks_are_flown_and_their_loss_is_noticed(personality: Personality) -> None:
-    """MANUAL_CONTROL, RC_CHANNELS_OVERRIDE."""
-    client = connected(personality)
+    """MANUAL_CONTROL, RC_CHANNELS_OVERRIDE.  An ArduCopter's SITL without its receiver."""
+    alone = {"SIM_RC_FAIL": 1.0} if personality == "ardupilot" else {}
+    client = connected(personality, parameters=alone)
     client.take_off(10.0)
     centred = mavlink.MAVLink_manual_control_message(1, 0, 0, 500, 0, 0)
     forward = mavlink.MAVLink_manual_control_message(1, 600, 0, 500, 0, 0)
@@ -171,6 +172,22 @@ def test_sticks_are_flown_and_their_loss_is_noticed(personality: Personality) ->
     assert math.hypot(*client.sky.truth().v_ned[:2]) > 1.5
     client.sky.run(5.0)
     assert client.sky.truth().mode != name, "lost sticks are a failsafe"
+
+
+def test_ardupilots_receiver_is_heard_after_the_sticks_and_no_loss_is_noticed() -> None:
+    """As recorded (B5): its throttle at the bottom sinks a LOITER by 2.5 m/s."""
+    client = connected("ardupilot")
+    client.take_off(20.0)
+    centred = mavlink.MAVLink_manual_control_message(1, 0, 0, 500, 0, 0)
+    stream(client, centred, 0.5)
+    assert set_mode(client, "LOITER") == [ACCEPTED]
+    stream(client, centred, 3.0)
+    assert -client.sky.truth().pos_ned[2] == pytest.approx(20.0, abs=0.5)
+    client.forget()
+    client.sky.run(6.0)
+    assert client.sky.truth().v_ned[2] == pytest.approx(2.5, abs=0.1)
+    assert mode(client) == "LOITER"
+    assert not [each.text for each in client.all("STATUSTEXT") if "Failsafe" in each.text]
 
 
 def test_overridden_channels_fly_ardupilot() -> None:

@@ -259,6 +259,17 @@ def test_an_operator_is_told_who_has_taken_control_over_and_how_to_have_it_back(
     assert scene.answer.text.startswith("CONTROL WENT TO nobody")
 
 
+def test_the_ending_of_a_take_over_does_not_hide_who_is_in_control() -> None:
+    """The station's snapshot of it comes before the ending."""
+    scene = controlled_by(OTHER)
+    scene.update(ipc.VerdictEvent(1, "station_take", "accepted"))
+    assert scene.snapshot is not None
+    mine = ipc.OperatorInfo(1, "gcs fly, pid 4710")
+    scene.update(msgspec.structs.replace(scene.snapshot, in_control=mine))
+    scene.update(ipc.EndingEvent(1, "station_take", "complete"))
+    assert scene.answer.text == "you are in control of the station"
+
+
 def test_whoever_looks_on_is_told_of_a_change_between_others() -> None:
     scene = controlled_by(OTHER)
     assert scene.snapshot is not None
