@@ -18,7 +18,7 @@ from tests.system.patience import PATIENT_S
 from tests.system.programs import gcs
 from tests.unit.record.flights import MS, a_flight, messages_of, record
 
-ON_THE_GROUND = "wait 120\nquit\n"
+ON_THE_GROUND = "wait 180\nquit\n"
 
 
 def within(seconds: float, true: Callable[[], bool]) -> bool:
