@@ -15,7 +15,10 @@ from gcs.gate.refusal import Code, Refusal
 
 
 def _severity(turn: Turn) -> Refusal | None:
-    if turn.severity < Severity.HOLD:
+    """By all conditions: one that is on its way back inside begins nothing else."""
+    severities = turn.policy.severities
+    names = [name for name, _ in turn.memory.conditions]
+    if max((severities[name] for name in names), default=Severity.NOMINAL) < Severity.HOLD:
         return None
     return Refusal(Code.SEVERITY, turn.severity_sentence(), (("severity", float(turn.severity)),))
 

@@ -102,6 +102,8 @@ def goal(turn: Turn, request: GoTo) -> Refusal | None:
     memory = turn.memory
     if memory.verifier is None or memory.pos_ned is None or memory.v_ned is None:
         return _keep(turn, home_or_fence_unknown())
+    if memory.comes_back:
+        return _keep(turn, Refusal(Code.OUTSIDE_FENCE, "it is still on its way back inside"))
     return _keep(
         turn,
         memory.verifier.goal(

@@ -48,7 +48,6 @@ from gcs.gate.proof.world import (
     HOME,
     LOW,
     NOWHERE,
-    OUT,
     OUTSIDE,
     RUSH,
     SPOT,
@@ -396,7 +395,6 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "position short of the top": _input(PositionSeen(LOW, STILL, 0)),
         "position above the top": _input(PositionSeen(ABOVE, STILL, 0)),
         "position dashing for the fence": _input(PositionSeen(EDGE, DASH, 0)),
-        "position outside": _input(PositionSeen(OUT, STILL, 0)),
         "position after a reset": _input(PositionSeen(SPOT, STILL, 0, reset=True)),
         **{f"{mode.value} mode": _mode(mode) for mode in FlightMode},
         "another message": _input(MessageSeen()),
@@ -434,12 +432,7 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "mission loaded": _input(MissionLoaded("square", 4)),
         "mission at its last item": _input(MissionSeen(3, 4, finished=False)),
         "mission finished": _input(MissionSeen(3, 4, finished=True)),
-        **{
-            f"condition: {severity.name}": _condition(c)
-            for c, severity in CONDITIONS.items()
-            if c is not Condition.FENCE_BREACHED
-        },
-        "condition: outside": _condition(Condition.FENCE_BREACHED),
+        **{f"condition: {severity.name}": _condition(c) for c, severity in CONDITIONS.items()},
         "condition: CAUTION, and it is over": _caution,
         "home and fence become known": _become_known,
         "home moves, and back": _home_moves,

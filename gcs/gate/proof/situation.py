@@ -22,7 +22,7 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
-from gcs.gate.proof.world import ABOVE, EDGE, LOW, OUT, TOP
+from gcs.gate.proof.world import ABOVE, EDGE, LOW, TOP
 from gcs.gate.states import FlightMode, LandedState, State
 
 _MODES: Final = {
@@ -122,7 +122,7 @@ def _position(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> 
     flown = memory.goal is not None
     return (
         memory.pos_ned in (TOP, LOW, ABOVE) and memory.pos_ned if climbs else None,
-        memory.pos_ned if memory.state in apart.places and memory.pos_ned in (EDGE, OUT) else None,
+        memory.state in apart.places and memory.pos_ned == EDGE,
         memory.goal is not None and memory.pos_ned == memory.goal.pos_ned,
         flown and memory.within_since_ns is not None,
     )

@@ -26,7 +26,6 @@ STILL: Final[Vec3] = (0.0, 0.0, 0.0)
 SPOT: Final[Vec3] = (0.0, 0.0, -5.0)
 GOAL: Final[Vec3] = (3.0, 0.0, -5.0)
 EDGE: Final[Vec3] = (18.0, 0.0, -5.0)
-OUT: Final[Vec3] = (24.0, 0.0, -5.0)
 DASH: Final[Vec3] = (8.0, 0.0, 0.0)
 TOP: Final[Vec3] = (0.0, 0.0, -10.0)
 LOW: Final[Vec3] = (0.0, 0.0, -9.25)
@@ -40,14 +39,13 @@ CONDITIONS: Final[Mapping[Condition, Severity]] = MappingProxyType(
     {
         Condition.TICK_LATE: Severity.CAUTION,
         Condition.BATTERY_LOW: Severity.HOLD,
-        Condition.FENCE_BREACHED: Severity.HOLD,
         Condition.BATTERY_CRITICAL: Severity.RETURN,
         Condition.VEHICLE_FAILSAFE_ACTIVE: Severity.LAND,
         Condition.ORIGIN_MISMATCH: Severity.TERMINATE,
     }
 )
 """One condition of each severity is enough: the gate knows conditions by severity alone, but for
-the one of a vehicle that is outside."""
+the one of a vehicle that is outside (CHANGELOG.md, known gaps)."""
 
 YARD: Final = structs.replace(
     DEFAULT,
