@@ -159,7 +159,7 @@ def test_ardupilots_velocity_lasts_three_seconds() -> None:
 
 @either
 def test_sticks_are_flown_and_their_loss_is_noticed(personality: Personality) -> None:
-    """MANUAL_CONTROL, RC_CHANNELS_OVERRIDE.  An ArduCopter's SITL without its receiver."""
+    """MANUAL_CONTROL, RC_CHANNELS_OVERRIDE."""
     alone = {"SIM_RC_FAIL": 1.0} if personality == "ardupilot" else {}
     client = connected(personality, parameters=alone)
     client.take_off(10.0)

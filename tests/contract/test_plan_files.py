@@ -97,6 +97,12 @@ def taken(personality: Personality, path: Path) -> None:
         rows = [HOME, *rows]
     numbered = tuple(replace(row, seq=seq) for seq, row in enumerate(rows))
     if personality == "px4":
-        # WPL files carry a return in frame 3, which PX4 refuses: ground stations send frame 2.
-        numbered = tuple(replace(row, frame=2) if row.command == 20 else row for row in numbered)
+        # WPL files carry items without a place in frames that have one, which PX4 refuses: ground
+        # stations send frame 2.
+        refused = "is not supported for an item without a place"
+        while (wrong := check(numbered, personality)) is not None and refused in wrong[1]:
+            seq = wrong[0]
+            assert numbered[seq].frame != MISSION_FRAME
+            mended = replace(numbered[seq], frame=MISSION_FRAME)
+            numbered = (*numbered[:seq], mended, *numbered[seq + 1 :])
     assert check(numbered, personality) is None
