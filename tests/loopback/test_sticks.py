@@ -129,7 +129,7 @@ def test_full_stick_at_the_fence_is_held_inside_and_flown_back(
     if flight.is_in(State.HOLDING):
         return
     back = {key: 1000 - value if key == "z" else -value for key, value in sticks.items()}
-    joystick.fly(4.0, **back)
+    joystick.fly(6.0, **back)
     assert joystick.outside_m < 0.0
     assert math.dist(flight.truth_enu(), held) > 1.5
 
