@@ -145,9 +145,10 @@ def holds_until_it_is_shown(edge: Edge) -> Iterator[str]:
 
 
 def _taken_back(edge: Edge) -> bool:
-    """A mode was overdue when the operator asked for control, so the vehicle was told to hold in
-    the same step, before control is taken of what holds."""
-    return edge.mode_overdue and edge.accepted and edge.after.control is Control.TAKING
+    """A mode or a request was overdue when the operator asked for control, so the vehicle was told
+    to hold in the same step, before control is taken of what holds: that hold is cancelled."""
+    overdue = edge.mode_overdue or edge.task_overdue
+    return overdue and edge.accepted and edge.after.control is Control.TAKING
 
 
 def _chosen_by_others(edge: Edge) -> bool:
