@@ -15,8 +15,8 @@ from unittest import mock
 
 from gcs import ipc
 from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.questions.back_inside import WayBack
 from gcs.gate.airspace.questions.braking import Breach
-from gcs.gate.airspace.questions.excursions import WayBack
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.effects import Effect
 from gcs.gate.inputs import Input

@@ -46,13 +46,13 @@ class OwnPath:
 
 
 @dataclass(frozen=True, slots=True)
-class WayIn:
+class OnWayBack:
     """The vehicle is outside, and is sent to a verified place inside."""
 
     to_ned: Vec3
 
 
-Path: TypeAlias = Setpoints | OwnPath | WayIn | None
+Path: TypeAlias = Setpoints | OwnPath | OnWayBack | None
 """What the vehicle flies; None: nothing that it would slow down for by itself."""
 
 
@@ -113,7 +113,7 @@ def ways_to_stop(
     held = (StopBy.HOLD, stop_point(pos_ned, v_ned, policy.braking_of(autopilot), late_s))
     own_ned = stop_point(pos_ned, v_ned, policy.approach_of(autopilot), late_s)
     match path:
-        case None | WayIn():
+        case None | OnWayBack():
             return (held,)
         case OwnPath(within):
             on_path = within is None or within.holds(pos_ned)

@@ -16,8 +16,8 @@ from gcs.gate.airspace import pace
 from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.questions import (
+    back_inside,
     braking,
-    excursions,
     goals,
     missions,
     positions,
@@ -46,8 +46,8 @@ class Verifier(Bounds):
     start = positions.start
     outside = positions.outside
 
-    way_back = excursions.way_back
-    leaves_way_back = excursions.leaves_way_back
+    way_back = back_inside.way_back
+    leaves_way_back = back_inside.leaves_way_back
 
     stream_sample = streams.stream_sample
 

@@ -110,13 +110,13 @@ def _take_control(turn: Turn) -> None:
     _take_control_at(turn, turn.memory.pos_ned)
 
 
-def _take_control_on_way_in(turn: Turn) -> None:
+def _take_control_on_way_back(turn: Turn) -> None:
     """As `_take_control`, with a place inside as setpoint: the vehicle is outside, and flies there
     slowly."""
-    way = verifying.way_in(turn)
+    way = verifying.way_back(turn)
     assert way is not None
     _take_control_at(turn, way.to_ned)
-    turn.memory.hold = Goal(way.to_ned, None, way.evidence, way_in=True)
+    turn.memory.hold = Goal(way.to_ned, None, way.evidence, way_back=True)
     turn.say(Level.WARNING, f"It is outside, and flies back inside: to {place(way.to_ned)}")
 
 
@@ -231,7 +231,7 @@ ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
         Action.REFUSE_GOAL: _refuse_goal,
         Action.HOLD_AT_GOAL: _hold_at_goal,
         Action.TAKE_CONTROL: _take_control,
-        Action.TAKE_CONTROL_ON_WAY_IN: _take_control_on_way_in,
+        Action.TAKE_CONTROL_ON_WAY_BACK: _take_control_on_way_back,
         Action.TAKE_CONTROL_AT_TOP: _take_control_at_top,
         Action.FLY_TO_TOP: _fly_to_top,
         Action.ASK_GUIDED: _ask_guided,

@@ -14,20 +14,19 @@ from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal
 
 
-def _severity(turn: Turn) -> Refusal | None:
-    """By all conditions: one that is on its way back inside begins nothing else."""
-    severities = turn.policy.severities
-    names = [name for name, _ in turn.memory.conditions]
-    if max((severities[name] for name in names), default=Severity.NOMINAL) < Severity.HOLD:
+def _severity(turn: Turn, but: Condition | None = None) -> Refusal | None:
+    """By all conditions: a vehicle that is on its way back inside begins nothing else."""
+    names = [name for name, _ in turn.memory.conditions if name is not but]
+    worst = max((turn.policy.severities[name] for name in names), default=Severity.NOMINAL)
+    if worst < Severity.HOLD:
         return None
-    return Refusal(Code.SEVERITY, turn.severity_sentence(), (("severity", float(turn.severity)),))
+    sentence = f"severity is {worst.name}: {', '.join(name.value for name in names)}"
+    return Refusal(Code.SEVERITY, sentence, (("severity", float(worst)),))
 
 
 def _severity_but_fence(turn: Turn) -> Refusal | None:
     """That it is outside does not forbid to fly back inside."""
-    names = [name for name, _ in turn.memory.conditions if name is not Condition.FENCE_BREACHED]
-    worst = max((turn.policy.severities[name] for name in names), default=Severity.NOMINAL)
-    return None if worst < Severity.HOLD else _severity(turn)
+    return _severity(turn, but=Condition.FENCE_BREACHED)
 
 
 def _recorder(turn: Turn) -> Refusal | None:

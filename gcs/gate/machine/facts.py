@@ -243,7 +243,7 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
     if jumped:
         yield Occurrence(Event.POSITION_JUMPED)
     if memory.comes_back and _is_inside(memory):
-        memory.hold = None if memory.hold is None else replace(memory.hold, way_in=False)
+        memory.hold = None if memory.hold is None else replace(memory.hold, way_back=False)
     if memory.verifier is not None and memory.control is not Control.NONE:
         breach = memory.verifier.predicted_stop(
             seen.pos_ned,

@@ -32,7 +32,7 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.facts import events_from
 from gcs.gate.machine.guards import GUARDS
 from gcs.gate.machine.memory import SECOND_NS, Memory
-from gcs.gate.machine.pacing import towards
+from gcs.gate.machine.pacing import towards, way_is_known
 from gcs.gate.machine.rules import BACK, STAY, Branch, Next, Reply
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
 from gcs.gate.machine.turn import CommandDraft, Draft, SampleDraft, SetpointDraft, Turn
@@ -310,7 +310,7 @@ class Gate:
             if memory.state is State.STREAMING and memory.flown is not None:
                 turn.out.append(SampleDraft(memory.flown.sample, memory.state.name))
                 return
-        if goal is not None:
+        if goal is not None and way_is_known(turn, goal.pos_ned):
             turn.out.append(SetpointDraft(goal, memory.state.name))
 
     def _permitted(self, draft: Draft) -> Effect:

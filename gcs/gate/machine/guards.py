@@ -173,7 +173,7 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.CLIMB_ENDED_ELSEWHERE: progress.climb_ended_elsewhere,
         Guard.CLIMBS_TOO_HIGH: progress.climbs_too_high,
         Guard.POSITION_CLEARS: lambda turn: verifying.position(turn) is None,
-        Guard.WAY_IN_CLEARS: lambda turn: verifying.way_in(turn) is not None,
+        Guard.WAY_BACK_CLEARS: lambda turn: verifying.way_back(turn) is not None,
         Guard.POSITION_TOO_OLD: lambda turn: turn.stale,
         Guard.TOP_CLEARS: lambda turn: verifying.top(turn) is None,
         Guard.RETURN_PATH_CLEARS: lambda turn: verifying.return_path(turn) is None,

@@ -15,7 +15,7 @@ from gcs.gate.airspace.attitude_samples import BeforeThis
 from gcs.gate.airspace.mission_box import MissionBox
 from gcs.gate.airspace.pace import Paced
 from gcs.gate.airspace.return_place import HOME, ReturnPlace
-from gcs.gate.airspace.stopping import OwnPath, Path, Setpoints, WayIn
+from gcs.gate.airspace.stopping import OnWayBack, OwnPath, Path, Setpoints
 from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.condition import Condition
@@ -50,7 +50,7 @@ class Goal:
     pos_ned: Vec3
     yaw_rad: float | None
     evidence: tuple[tuple[str, float], ...]
-    way_in: bool = False  # the vehicle that is sent there began outside
+    way_back: bool = False  # the vehicle that is sent there began outside
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,7 +197,7 @@ class Memory:
         if self.flown_state in OWN_PATHS:
             return OwnPath()
         if self.comes_back and self.hold is not None:
-            return WayIn(self.hold.pos_ned)
+            return OnWayBack(self.hold.pos_ned)
         if self.flown_state is State.STREAMING and self.flown is not None:
             sample = self.flown.sample
             return Setpoints() if sample.pos_ned is not None and sample.v_ned is None else None
@@ -207,10 +207,10 @@ class Memory:
     @property
     def comes_back(self) -> bool:
         """It is outside, and is flown to a place inside."""
-        return self.flown_state is State.HOVERING and self.hold is not None and self.hold.way_in
+        return self.flown_state is State.HOVERING and self.hold is not None and self.hold.way_back
 
     @property
-    def counting(self) -> tuple[Condition, ...]:
+    def counted_conditions(self) -> tuple[Condition, ...]:
         """The conditions that count: that it is outside forbids no way back inside."""
         names = tuple(name for name, _ in self.conditions)
         if not self.comes_back:

@@ -11,19 +11,25 @@ from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.turn import Turn
 
 
+def way_is_known(turn: Turn, goal_ned: Vec3) -> bool:
+    """The position is fresh, or something was sent on the way to `goal_ned` while it was."""
+    paced = turn.memory.paced
+    return not turn.stale or (paced is not None and paced.goal_ned == goal_ned)
+
+
 def towards(turn: Turn, goal_ned: Vec3, beside_ned: Vec3 | None = None) -> Vec3:
     """The position to send now on the way to `goal_ned`; `beside_ned` is a velocity that is sent
     with it.
 
     It goes on from the last report: without another one it stays where it is, and the vehicle slows
-    down for it.  Where the report is too old, it is what was sent last on this way.
+    down for it.  Where the report is too old, it is what was sent last on this way: see
+    `way_is_known`.
     """
     memory = turn.memory
     if memory.verifier is None or memory.pos_ned is None or memory.v_ned is None:
         return goal_ned
     if turn.stale:
-        last = memory.paced
-        return last.target_ned if last and last.goal_ned == goal_ned else memory.pos_ned
+        return goal_ned if memory.paced is None else memory.paced.target_ned
     memory.paced = memory.verifier.paced(
         goal_ned, memory.pos_ned, memory.v_ned, memory.late_s, beside_ned or STANDING
     )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Final
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.questions.excursions import WayBack
+from gcs.gate.airspace.questions.back_inside import WayBack
 from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.memory import Memory
 from gcs.gate.machine.rules import Check

@@ -65,10 +65,10 @@ take_control: Final = Branch(
     to=HOVERING,
 )
 come_back_inside: Final = Branch(
-    when=(Guard.WAY_IN_CLEARS,),
+    when=(Guard.WAY_BACK_CLEARS,),
     needs=(Check.SEVERITY_BUT_FENCE,),
     reply=Reply.ACCEPTED,
-    do=(Action.TAKE_CONTROL_ON_WAY_IN,),
+    do=(Action.TAKE_CONTROL_ON_WAY_BACK,),
     to=HOVERING,
 )
 guided_on_ground: Final[Cell] = (

@@ -120,7 +120,7 @@ class Turn:
         """The worst of all active conditions."""
         severities = self.policy.severities
         return max(
-            (severities[condition] for condition in self.memory.counting),
+            (severities[condition] for condition in self.memory.counted_conditions),
             default=Severity.NOMINAL,
         )
 

@@ -15,7 +15,7 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis, lean_of
 from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.limits import STANDING
-from gcs.gate.airspace.questions.excursions import WayBack
+from gcs.gate.airspace.questions.back_inside import WayBack
 from gcs.gate.airspace.stream_samples import TICK_S, StreamSample
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.airspace.zones import Zone
@@ -49,7 +49,7 @@ def position(turn: Turn, gained_ned: tuple[Vec3, ...] = ()) -> Refusal | None:
     return _keep(turn, judged)
 
 
-def way_in(turn: Turn) -> WayBack | None:
+def way_back(turn: Turn) -> WayBack | None:
     """The way back inside of a vehicle that flies where it may not stay; None where none clears, or
     its position is too old."""
     memory = turn.memory
@@ -65,7 +65,7 @@ def way_in(turn: Turn) -> WayBack | None:
 def _ways_out(turn: Turn, pos_ned: Vec3) -> str:
     """What is left to a vehicle that flies where it may not hover."""
     memory, ways = turn.memory, ["land"]
-    back = way_in(turn)
+    back = way_back(turn)
     if back is not None:
         ways.insert(0, f"resume (it flies back to {place(back.to_ned)})")
     if memory.verifier is not None and memory.returns_to and memory.return_up_m is not None:

@@ -123,4 +123,4 @@ class Edge:
 def severity_of(policy: Policy, memory: Memory) -> Severity:
     """Of all conditions the worst."""
     severities = policy.severities
-    return max((severities[name] for name in memory.counting), default=Severity.NOMINAL)
+    return max((severities[name] for name in memory.counted_conditions), default=Severity.NOMINAL)

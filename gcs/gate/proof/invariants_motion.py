@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from gcs.gate.airspace.limits import STANDING
-from gcs.gate.airspace.stopping import OwnPath, Path, Setpoints, StopBy, WayIn
+from gcs.gate.airspace.stopping import OnWayBack, OwnPath, Path, Setpoints, StopBy
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Outcome, OutcomeKind, Transition
 from gcs.gate.inputs import HomeSeen, MissionLoaded, PositionSeen, Tick, VerifierChanged
@@ -280,8 +280,8 @@ def _flown(memory: Memory) -> Path:
         return OwnPath(memory.mission_within)
     if memory.flown_state in (State.TAKING_OFF, State.RETURNING):
         return OwnPath()
-    if memory.flown_state is State.HOVERING and memory.hold is not None and memory.hold.way_in:
-        return WayIn(memory.hold.pos_ned)
+    if memory.flown_state is State.HOVERING and memory.hold is not None and memory.hold.way_back:
+        return OnWayBack(memory.hold.pos_ned)
     if memory.flown_state is State.STREAMING and memory.flown is not None:
         asked = memory.flown.sample
         if asked.pos_ned is None or asked.v_ned is not None:

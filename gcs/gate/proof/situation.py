@@ -86,7 +86,7 @@ def situation(policy: Policy, memory: Memory, now_ns: int) -> Hashable:
 
 def _machine(apart: ToldApart, policy: Policy, memory: Memory, now_ns: int) -> Hashable:
     state = memory.state
-    severities = [policy.severities[name] for name in memory.counting]
+    severities = [policy.severities[name] for name in memory.counted_conditions]
     worst = apart.worst.get(state, Severity.RETURN)
     return (
         state,

@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from gcs.frames import Vec3, enu_from_ned
-from gcs.gate.airspace.questions.excursions import ROOM_M, WayBack
+from gcs.gate.airspace.questions.back_inside import ROOM_M, WayBack
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, OutcomeKind, Ruling

@@ -11,9 +11,9 @@ from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.limits import STANDING, beyond_reach
 from gcs.gate.airspace.prediction import bad_stop
-from gcs.gate.airspace.questions.excursions import leaves_way_back
+from gcs.gate.airspace.questions.back_inside import leaves_way_back
 from gcs.gate.airspace.questions.positions import hold_point
-from gcs.gate.airspace.stopping import Path, StopBy, WayIn
+from gcs.gate.airspace.stopping import OnWayBack, Path, StopBy
 
 BRAKE_STEPS: Final = 16
 """How many positions between the predicted stop and the vehicle are tried for the brake."""
@@ -77,7 +77,7 @@ def predicted_stop(
     bad = bad_stop(bounds, pos_ned, v_ned, path, late_s, floor_applies=floor_applies)
     if bad is None:
         return None
-    if isinstance(path, WayIn):
+    if isinstance(path, OnWayBack):
         astray = leaves_way_back(bounds, pos_ned, v_ned, path.to_ned)
         if astray is None:
             return None
