@@ -82,7 +82,7 @@ def test_full_speed_straight_at_the_fence_is_held_and_flown_back(
     kind: Personality, v_enu: Vec3
 ) -> None:
     flight = flight_of(kind)
-    outside_m = stream(flight, v_enu, 14.0)
+    outside_m = stream(flight, v_enu, 18.0)
     assert outside_m < 0.0
     assert flight.is_in(State.STREAMING)
     assert told(flight) == ["accepted", "CANNOT_STOP"]

@@ -21,7 +21,8 @@ def test_it_takes_off_hovers_flies_the_square_lands_and_disarms(
     assert figures.hover_m < (0.35 if personality == "px4" else 0.3)
     assert figures.hover_up_m < 0.4
     assert figures.climb_over_m < 1.1
-    assert figures.over_m < 0.5
+    # In a wind of 10 m/s the loops that have learnt its drag overshoot.
+    assert figures.over_m < (0.6 if case == "wind 10 m/s" else 0.5)
     # PX4 flies its legs by MPC_JERK_AUTO: 40 m in 13.3 s (I2_takeoff_and_goto_profiles).
     assert figures.square_s < (27.0 if personality == "px4" else 20.0)
     assert figures.land_s < (20.0 if personality == "px4" else 25.0)

@@ -170,7 +170,7 @@ def test_speed_changes_and_goes_back(personality: Personality) -> None:
     flight.fly(4.0)
     assert flight.speed_m_s == pytest.approx(1.5, abs=0.2)
     flight.vehicle.change_speed(ground, None)
-    flight.fly(4.0)
+    flight.fly(5.0)
     cruise_m_s = {"px4": 5.0, "ardupilot": 10.0}[personality]
     assert flight.speed_m_s == pytest.approx(cruise_m_s, abs=0.3)
 

@@ -182,7 +182,7 @@ def test_a_goal_that_is_sent_bare_is_found(monkeypatch: pytest.MonkeyPatch) -> N
     assert fault is not None
     assert fault.objection.invariant == 6
     assert "at no speed that was chosen" in fault.objection.sentence
-    assert fault.trace[-1][0] == "tick"
+    assert fault.trace[-1][0] == "wait: mode overdue"
 
 
 def test_the_trace_is_the_shortest_there_is() -> None:
