@@ -25,18 +25,6 @@ def overshoot_m(autopilot: AutopilotName, speed_m_s: float) -> float:
     return LEAST_M + LATE_S[autopilot] * speed_m_s if speed_m_s > 0.0 else 0.0
 
 
-def curve_reach_m(from_ned: Vec3, to_ned: Vec3, speed_m_s: float, accel_m_s2: float) -> float:
-    """How far past `to_ned` where a curve ends, or begins without a stop.
-
-    An ArduCopter flies curves, and straight legs before a curve, without slowing down for the bend:
-    8.8 m past the end of a leg of 40 m at 10 m/s (6.4 at 5 m/s), 3.3 m of one of 20 m.  That is
-    0.22 of the leg, and no more than it takes to stop (v^2 / 2a) but for 1.4 m; 1.3 times the
-    lesser of both, and `LEAST_M`.
-    """
-    stops_m = speed_m_s * speed_m_s / (2.0 * accel_m_s2)
-    return LEAST_M + 1.3 * min(stops_m, 0.22 * math.dist(from_ned, to_ned))
-
-
 def past(from_ned: Vec3, to_ned: Vec3, reach_m: float) -> Vec3:
     """So far behind `to_ned`, level, on the way from `from_ned`; `to_ned` where that is upright."""
     way_m = math.dist(from_ned, to_ned)

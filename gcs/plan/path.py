@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from gcs.frames import Vec3
 from gcs.plan import commands, returns
@@ -45,7 +45,7 @@ from gcs.plan.legs import (
 )
 from gcs.plan.model import Item, Plan
 from gcs.plan.onward import ways_on
-from gcs.plan.overshoot import curve_reach_m, overshoot_m, past
+from gcs.plan.overshoot import overshoot_m, past
 from gcs.plan.turns import blend, fewer, turning_places
 from gcs.wire.ids import Cmd
 
@@ -57,8 +57,7 @@ _UNFLYABLE: dict[Flown | None, ProblemKind] = {
     Flown.DESCENDS: ProblemKind.OWN_DESCENT,
 }
 _CURVE_BESIDE_M = 1.5
-"""So far beside a curve the vehicle may be: 1.0 to 1.5 m were recorded of ArduCopter 4.7 (2.0 with
-twice its acceleration)."""
+"""So far beside the halves' hulls; 1.3 m more of ArduCopter 4.7 with twice its acceleration."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,10 +219,6 @@ class PathWalk:
         reach_m = self._overshoot_m
         return fewer(tuple(past(start, to_ned, reach_m) for start in starts), without=to_ned)
 
-    def _curve_reach_m(self, from_ned: Vec3, to_ned: Vec3) -> float:
-        own_m, settings = self._overshoot_m, self._ground.settings
-        return max(own_m, curve_reach_m(from_ned, to_ned, self._speed_m_s, settings.accel_m_s2))
-
     @property
     def _overshoot_m(self) -> float:
         return overshoot_m(self._ground.autopilot, self._speed_m_s)
@@ -379,9 +374,6 @@ class PathWalk:
         self._leg(index, LegKind.STRAIGHT, here.pos_ned, to_ned)
         onward, may_stop = ways_on(self._plan, index, self._places, self._ground.autopilot, to_ned)
         neighbours = Neighbours(here.before_ned, here.before_curved, here.rests, onward, may_stop)
-        if here.before_ned is not None and not here.before_curved:
-            reach_m = self._curve_reach_m(here.before_ned, here.pos_ned)
-            here = replace(here, past=(*here.past, past(here.before_ned, here.pos_ned, reach_m)))
         starts = self._starts(index, here, to_ned)
         begins = starts if here.rests else (here.pos_ned,)
         found = splines(begins, to_ned, neighbours)
@@ -390,8 +382,7 @@ class PathWalk:
         for piece in others:
             self._region(index, RegionKind.CURVE, (), piece, to_ned)
         accept_m = self._ground.settings.accept_m
-        reach_m = self._curve_reach_m(here.pos_ned, to_ned)
-        ends = [way.ends(accept_m, reach_m) for way in found]
+        ends = [way.ends(accept_m, self._overshoot_m) for way in found]
         behind = fewer(tuple(place for place, _ in ends), without=to_ned)
         on = fewer(tuple(place for _, both in ends for place in both), without=to_ned)
         return _Here(to_ned, behind, on, here.pos_ned, before_curved=True, rests=may_stop)
