@@ -3,10 +3,10 @@
 A spline leg is a cubic Hermite curve from P to Q with tangents m and n, which is the Bezier curve
 with the control points P, P + m / 3, Q - n / 3 and Q.  Any piece of it is a Bezier curve too, and
 lies in the hull of its own control points.  An ArduCopter does not slow down before a bend: it
-cuts across towards the control points, up to 5 m beside the curve.  The hulls of the two halves
-hold all that was recorded but for 1.3 m (`tests/real/facts`: 12 flights, legs of 15 to 80 m at 5
-and 10 m/s, turns of 30 to 180 degrees); those of smaller pieces do not.  The tangents, by memory
-of AC_WPNav::set_spline_destination:
+cuts across towards the control points, up to 5 m beside the curve.  The hulls of the two halves,
+1.5 m wider (3 m at twice the acceleration), hold all that was recorded but for 0.7 m
+(`tests/real/facts`: 17 flights, legs of 15 to 80 m at 5 to 12 m/s, turns of 30 to 180 degrees);
+those of smaller pieces do not.  The tangents, by memory of AC_WPNav::set_spline_destination:
 
 m   at rest none; after a straight leg that leg; after a spline that spline's n;
 n   where a spline follows, from P to the place after Q; where a straight leg follows, from Q to

@@ -56,8 +56,8 @@ _UNFLYABLE: dict[Flown | None, ProblemKind] = {
     Flown.REFUSED: ProblemKind.REFUSED,
     Flown.DESCENDS: ProblemKind.OWN_DESCENT,
 }
-_CURVE_BESIDE_M = 1.5
-"""So far beside the halves' hulls; 1.3 m more of ArduCopter 4.7 with twice its acceleration."""
+_CURVE_BESIDE_S2 = 0.6
+"""Times its acceleration the vehicle may be beside the halves' hulls: 1.5 m as ArduCopter comes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -377,7 +377,7 @@ class PathWalk:
         starts = self._starts(index, here, to_ned)
         begins = starts if here.rests else (here.pos_ned,)
         found = splines(begins, to_ned, neighbours)
-        first, *others = pieces(found, _CURVE_BESIDE_M)
+        first, *others = pieces(found, _CURVE_BESIDE_S2 * self._ground.settings.accel_m_s2)
         self._region(index, RegionKind.CURVE, starts, first, to_ned)
         for piece in others:
             self._region(index, RegionKind.CURVE, (), piece, to_ned)

@@ -165,11 +165,11 @@ def flights_px4() -> tuple[Flight, ...]:
     )
 
 
-def splines(leg_m: float, ends_straight: bool) -> tuple[Item, ...]:
+def splines(leg_m: float, straight: Sequence[int] = ()) -> tuple[Item, ...]:
+    """Curves; to the items with these numbers straight legs."""
     items = list(zigzag(leg_m, command=SPLINE, steps_m=(3.0, -3.0, 0.0)))
-    if ends_straight:
-        for number in (3, 6):
-            items[number] = _at(items[number].north_m, items[number].east_m, 12.0)
+    for number in straight:
+        items[number] = _at(items[number].north_m, items[number].east_m, 12.0)
     return tuple(items)
 
 
@@ -205,14 +205,19 @@ def flights_ardupilot() -> tuple[Flight, ...]:
         Flight("heights_60m_20m", heights(60.0, 20.0)),
         Flight("ups", ups(), low),
         Flight("landing", landing(30.0, 40.0, 15.0)),
-        Flight("splines_40m", splines(40.0, ends_straight=False)),
-        Flight("splines_15m", splines(15.0, ends_straight=False)),
-        Flight("splines_80m", splines(80.0, ends_straight=False)),
-        Flight("splines_and_legs_40m", splines(40.0, ends_straight=True)),
-        Flight("splines_and_legs_20m", splines(20.0, ends_straight=True)),
+        Flight("splines_40m", splines(40.0)),
+        Flight("splines_15m", splines(15.0)),
+        Flight("splines_80m", splines(80.0)),
+        Flight("splines_and_legs_40m", splines(40.0, (3, 6))),
+        Flight("splines_and_legs_20m", splines(20.0, (3, 6))),
         Flight("splines_hold", zigzag(40.0, command=SPLINE, hold_s=1.0)),
-        Flight("splines_40m_quick", splines(40.0, ends_straight=False), {"WP_ACC": 5.0}),
-        Flight("splines_40m_5m_s", (_speed(5.0), *splines(40.0, ends_straight=True))),
+        Flight("splines_40m_quick", splines(40.0), {"WP_ACC": 5.0}),
+        Flight("splines_40m_5m_s", (_speed(5.0), *splines(40.0, (3, 6)))),
+        Flight("splines_and_legs_80m", splines(80.0, (3, 6))),
+        Flight("splines_and_legs_60m", splines(60.0, (2, 4, 6))),
+        Flight("legs_and_splines_60m_12m_s", (_speed(12.0), *splines(60.0, (1, 3, 5)))),
+        Flight("splines_and_legs_60m_quick", splines(60.0, (2, 5)), {"WP_ACC": 5.0}),
+        Flight("splines_and_legs_30m", splines(30.0, (1, 4, 7))),
         Flight("circles", circles(1.0, (10.0, -10.0, 5.0))),
         Flight("circles_part", circles(1.5, (20.0, -6.0, 15.0))),
         Flight("circles_two", circles(2.0, (4.0, -12.0, 20.0))),

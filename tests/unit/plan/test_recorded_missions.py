@@ -36,7 +36,7 @@ TAKE_OFF, CIRCLE, SPLINE = 22, 18, 82
 BESIDE_M: Final[dict[AutopilotName, float]] = {"px4": 1.8, "ardupilot": 0.5}
 """So far outside the regions the worst flight was, rounded up; the policy's margin of 2 m is beside
 them.  A PX4 takes off up to 1 m beside its place, by the error of its estimate."""
-BESIDE_CURVES_M = 1.5
+BESIDE_CURVES_M = 0.7
 
 
 def recorded(who: AutopilotName) -> list[dict[str, Any]]:
