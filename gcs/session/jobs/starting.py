@@ -74,6 +74,10 @@ class StartingJob(VerifiedJob):
 
     def __init__(self, asked: Asked) -> None:
         super().__init__(asked)
+        self.not_before_ns = 0
+        """Until then a PX4 may not have checked the mission that it has taken."""
+        self._waits = False
+        """For that moment."""
         self._rewinding = False
         """The vehicle is to go to the item that it begins at."""
         self._begin_seq: int | None = None
@@ -92,6 +96,13 @@ class StartingJob(VerifiedJob):
         self, received: tuple[WireItem, ...], view: VehicleView, now_ns: int
     ) -> list[JobWork]:
         """The items that are on board."""
+
+    @property
+    def deadline_ns(self) -> int | None:
+        return self.not_before_ns if self._waits else super().deadline_ns
+
+    def wake(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        return self._ask_from_here(view, now_ns) if self._waits else super().wake(view, now_ns)
 
     def file(self, news: FileRead | FileWritten, view: VehicleView, now_ns: int) -> list[JobWork]:
         return []
@@ -133,6 +144,10 @@ class StartingJob(VerifiedJob):
 
     def _ask_from_here(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         """Ask the gate, if the vehicle still is where the mission was verified from."""
+        self._waits = now_ns < self.not_before_ns
+        if self._waits:
+            self.stop_transfer()
+            return []
         verified_from, within_m = self._verified_from, view.policy.arrival.max_radius_m
         moved = verified_from is not None and verified_from.is_left(
             _place(view.telemetry), within_m

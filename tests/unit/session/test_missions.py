@@ -19,7 +19,7 @@ from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.effects import ReadFile, WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.jobs.job import VehicleView
-from gcs.session.missions import PLAN_RECEIVED, Missions
+from gcs.session.missions import PLAN_RECEIVED, PX4_CHECKS_NS, Missions
 from gcs.session.telemetry import Telemetry
 from gcs.session.times import Times
 from gcs.session.work import AskGate, Decide, ToGate, Work
@@ -85,6 +85,7 @@ class Script:
             work += self.with_replies(self.missions.wake(self.view(), self.now_ns))
         (ended,) = [item for item in work if isinstance(item, Outcome)]
         assert ended.code is None
+        self.now_ns += PX4_CHECKS_NS
 
     def view(self) -> VehicleView:
         assert self.telemetry is not None
@@ -245,6 +246,18 @@ def test_in_whatever_word_a_start_is_read_back_and_verified_before_the_gate_is_a
     work = script.ask(word)
     assert isinstance(work[0], Send)
     assert work[-1] == AskGate(2, StartMission())
+
+
+def test_a_px4_is_given_the_time_to_check_what_it_has_taken() -> None:
+    script = Script()
+    script.upload(BOX)
+    script.now_ns -= PX4_CHECKS_NS
+    script.state = State.HOVERING
+    work = script.ask("mission_start")
+    assert not any(isinstance(item, AskGate) for item in work)
+    assert script.missions.deadline_ns == script.now_ns + PX4_CHECKS_NS
+    script.now_ns += PX4_CHECKS_NS
+    assert script.missions.wake(script.view(), script.now_ns)[-1] == AskGate(2, StartMission())
 
 
 def test_after_a_restart_of_the_vehicle_nothing_is_known_of_what_is_on_board() -> None:

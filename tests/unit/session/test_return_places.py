@@ -231,7 +231,7 @@ def test_any_other_refusal_is_no_answer_and_is_asked_again(result: int) -> None:
 
 def test_silence_of_a_vehicle_that_is_heard_means_none_and_is_said_and_asked_again() -> None:
     script = Script().typed()
-    script.run(16.0)
+    script.run(31.0)
     assert script.told[-1] == NOWHERE_ELSE
     assert len(script.said) == 1
     assert "taken to have none" in script.said[0]

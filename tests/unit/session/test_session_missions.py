@@ -63,7 +63,7 @@ def mission() -> Mission:
     made = Mission()
     made.upload()
     made.script.armed = True
-    made.script.run(0.2)
+    made.script.run(0.4)
     return made
 
 

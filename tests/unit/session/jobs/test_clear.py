@@ -37,7 +37,7 @@ def test_a_vehicle_that_never_answers_may_have_it_still() -> None:
     silent.deaf_to = [MissionClearAll]
     script = clear(silent).run(60.0)
     assert script.outcome == (OutcomeKind.ABORTED, Code.NO_ANSWER)
-    assert len(script.sent(MissionClearAll)) == 10  # every 1.5 s, for 15 s
+    assert len(script.sent(MissionClearAll)) == 20  # every 1.5 s, for 30 s
     assert script.kept == []
 
 

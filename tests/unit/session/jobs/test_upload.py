@@ -309,7 +309,7 @@ def test_a_vehicle_that_never_answers_is_no_answer_after_all_tries() -> None:
     assert script.accepted
     script.run(60.0)
     assert script.outcome == aborted(Code.NO_ANSWER)
-    assert len(script.sent(MissionCount)) == 10  # every 1.5 s, for 15 s
+    assert len(script.sent(MissionCount)) == 20  # every 1.5 s, for 30 s
     assert script.loaded == [("", 0)]
 
 
