@@ -43,7 +43,7 @@ def fly(flight: Flight, row: Row) -> Result:
     marks = flight.marks or (len(observer.truth.samples), len(observer.off_m), time.monotonic())
     first, off, began = marks
     flown = observer.truth.samples[first:]
-    clearances = [row.clearance_m(place) for place in observer.flown[first:]]
+    clearances = [row.clearance_m(place) for place in observer.flown_from_home[first:]]
     nearest = min(clearances, default=None)
     share = 1.0
     if len(flown) > 1:

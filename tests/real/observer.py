@@ -22,7 +22,7 @@ class Observer(Link):
         self.off_m: list[float] = []  # of the vehicle's own position, beside each of the truth's
         self.home_local: Vector | None = None  # in the frame of the goals: east, north, up
         # The truth, each sample from the home of its moment: a PX4 that has landed has another.
-        self.flown: list[Vector] = []
+        self.flown_from_home: list[Vector] = []
         self.home_truth: Vector | None = None  # the same place in the truth's; up: as it stood
         self.estimate: Vector | None = None  # in the truth's frame; up is above home
         self._ended = False
@@ -56,8 +56,8 @@ class Observer(Link):
     def take(self, message: Any) -> None:
         super().take(message)
         if self.home_truth is not None:
-            for sample in self.truth.samples[len(self.flown) :]:
-                self.flown.append(self.from_home(sample.position_enu))
+            new = self.truth.samples[len(self.flown_from_home) :]
+            self.flown_from_home += [self.from_home(sample.position_enu) for sample in new]
         match message.get_type():
             case "HOME_POSITION" if self.truth.samples:
                 east, north, _ = self.truth.enu(message.latitude / 1e7, message.longitude / 1e7, 0)

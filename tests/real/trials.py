@@ -164,7 +164,7 @@ def way_back(flight: Flight, row: Row) -> Told:
     told = pilot.take()
     observer.wait(lambda: row.clearance_m(flight.from_home) > 1.0, 40.0)
     observer.at_rest(20.0)
-    out_m = [-row.clearance_m(place) for place in observer.flown[first:]]
+    out_m = [-row.clearance_m(place) for place in observer.flown_from_home[first:]]
     flight.mark()
     then = pilot.goto(flight.local(row.start))
     text = f"{told}: {out_m[0]:.1f}, at most {max(out_m):.1f}, at last {out_m[-1]:.1f} m outside"

@@ -95,7 +95,7 @@ class FenceJudge:
                 return refusal
         return None
 
-    def way_back(self, subject: str, a_ned: Vec3, b_ned: Vec3) -> Refusal | None:
+    def leg_back(self, subject: str, a_ned: Vec3, b_ned: Vec3) -> Refusal | None:
         """Refuses a leg that begins outside, or nearer than the margin, and comes nowhere farther
         out than at its start; of what it begins inside of, it keeps the margin all along."""
         motion = Motion.between(a_ned, b_ned)

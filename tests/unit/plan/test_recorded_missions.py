@@ -37,6 +37,7 @@ BESIDE_M: Final[dict[AutopilotName, float]] = {"px4": 1.8, "ardupilot": 0.5}
 """So far outside the regions the worst flight was, rounded up; the policy's margin of 2 m is beside
 them.  A PX4 takes off up to 1 m beside its place, by the error of its estimate."""
 BESIDE_CURVES_M = 0.7
+ALL_ITEMS = range(1000)
 
 
 def recorded(who: AutopilotName) -> list[dict[str, Any]]:
@@ -65,7 +66,7 @@ def predicted(flight: dict[str, Any], who: AutopilotName) -> FlightPath:
     return flight_path(Plan("recorded", None, None, tuple(items)), ground)
 
 
-def shapes_of(path: FlightPath, items: range = range(1000)) -> Iterator[shapely.Geometry]:
+def shapes_of(path: FlightPath, items: range = ALL_ITEMS) -> Iterator[shapely.Geometry]:
     """Of these items."""
     for leg in path.legs:
         if leg.item in items:
@@ -91,7 +92,7 @@ def test_the_truth_of_each_recorded_flight_is_in_its_regions(who: AutopilotName)
         allowed_m = BESIDE_CURVES_M if curved else BESIDE_M[who]
         for number, rows in groupby(flight["track"], lambda row: max(0, row[-1])):
             over = number == 0  # also at its end, when nothing is flown any more
-            near = range(1000) if over else range(number - 1, number + 2)
+            near = ALL_ITEMS if over else range(number - 1, number + 2)
             held = shapely.unary_union(list(shapes_of(path, near)))
             for row in rows:
                 away_m = held.distance(shapely.Point(row[1], row[2]))

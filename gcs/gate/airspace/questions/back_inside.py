@@ -51,7 +51,7 @@ def way_back(bounds: Bounds, pos_ned: Vec3, v_ned: Vec3) -> WayBack | Refusal:
     refusal = (
         bounds.beyond_limits(f"the way back to {there}", to_ned)
         or judge.point(f"the way back to {there}", to_ned, floor_applies=True)
-        or judge.way_back(f"the way back to {there}", pos_ned, to_ned)
+        or judge.leg_back(f"the way back to {there}", pos_ned, to_ned)
     )
     if refusal is not None:
         return refusal
@@ -68,7 +68,7 @@ def leaves_way_back(bounds: Bounds, pos_ned: Vec3, v_ned: Vec3, to_ned: Vec3) ->
     if out_m > DRIFTS_M:
         sentence = f"on its way back it would stop {fixed(out_m, 1)} m farther out"
         return Refusal(Code.CANNOT_STOP, sentence, (("farther_out_m", out_m),))
-    return bounds.judge.way_back(f"the way back to {place(to_ned)}", pos_ned, to_ned)
+    return bounds.judge.leg_back(f"the way back to {place(to_ned)}", pos_ned, to_ned)
 
 
 def _inside(bounds: Bounds, pos_ned: Vec3) -> Vec3:
