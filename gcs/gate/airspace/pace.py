@@ -4,6 +4,9 @@ An autopilot flies to a position that it is sent the faster the farther that is 
 takes longer from a higher speed than slowing down for the goal does.  So what is sent at each tick
 is a position on the way to the goal, just so far ahead of the vehicle that the autopilot flies
 towards it at the speed of this law, and slows down for it by itself where no other one follows.
+What has held a PX4 against its drag is left in its integrator when it has slowed down: asked for no
+speed it went on at 1.3 m/s for 2 s, and its brake by 1.8 m from 0.6 m/s.  Near a boundary it is
+asked to fly back, no faster than it flies on and by up to `back`, until it does slow down.
 
 The speed is the least of
 
@@ -34,12 +37,11 @@ from gcs.gate.airspace.limits import STANDING
 from gcs.gate.airspace.stopping import travel_m
 from gcs.gate.policy.policy import Pace
 
-FIRM: Final = 3.0
-"""One that is faster than its stop fits from is asked for less, by this times the difference.
-Recorded on PX4's own simulation, whose drag keeps it fast: 147.8 m to 2.2 m before the fence ended
-1.1 m outside with 1 and 0.9 and 1.2 m inside with 3; 57 m to 2.3 m before it 0.9 to 1.5 and 1.6 to
-1.8 m inside.  Where the stop fits it slows down for its goal as it does by itself: else it took a
-third longer in open air."""
+FIRM: Final = 4.0
+"""One that is faster than its stop fits from is asked for less, by this times the difference; where
+there is no room past its goal, one that is faster than the law.  Recorded on PX4's own simulation,
+whose drag keeps it fast: 147.8 m to 2.2 m before the fence ended 1.1 m outside with 1, 0.9 and
+1.2 m inside with 3.  In open air it slows down as by itself: else it took a third longer."""
 LAST_M: Final = 0.5
 """So near to its goal the goal itself is sent, where the stop from the speed of that fits."""
 CRAWL_M_S: Final = 1.0
@@ -92,6 +94,18 @@ def paced(
 
     judge = replace(bounds.judge, slack=Slack.ERROR)
 
+    def is_free(from_ned: Vec3, to_ned: Vec3) -> bool:
+        return (
+            judge.broken_stop(from_ned, to_ned, floor_applies=True) is None
+            and bounds.beyond_limits("", to_ned, allow=bounds.position_error) is None
+        )
+
+    past_h_m = rules.level.past_m
+    past_v_m = sign * min(abs(down), rules.vertical.past_m)
+    north, east, down_ned = goal_ned
+    past_ned = (north + n * past_h_m, east + e * past_h_m, down_ned + past_v_m)
+    may_pass = is_free(goal_ned, past_ned)
+
     def stop_fits(share: float) -> bool:
         fast_h_m_s = share * level.most_m_s + beside_h_m_s
         fast_v_m_s = share * vertical.most_m_s + beside_v_m_s
@@ -102,10 +116,7 @@ def paced(
             here_ned[1] + e * run_h_m,
             here_ned[2] + sign * run_v_m,
         )
-        return (
-            judge.broken_stop(here_ned, stop_ned, floor_applies=True) is None
-            and bounds.beyond_limits("", stop_ned, allow=bounds.position_error) is None
-        )
+        return is_free(here_ned, stop_ned)
 
     share = _largest_share(stop_fits)
     last_m = LAST_M if share >= 1.0 else 0.0
@@ -114,8 +125,12 @@ def paced(
     else:
         crawl = CRAWL_M_S / max(math.hypot(level.wanted_m_s, vertical.wanted_m_s), CRAWL_M_S)
         fits_h_m_s, fits_v_m_s = crawl * level.wanted_m_s, crawl * vertical.wanted_m_s
-    level_m_s, ahead_m = level.asked(fits_h_m_s, last_m)
-    vertical_m_s, up_or_down_m = vertical.asked(fits_v_m_s, last_m)
+    level_m_s, ahead_m = level.asked(fits_h_m_s, last_m, may_pass)
+    vertical_m_s, up_or_down_m = vertical.asked(fits_v_m_s, last_m, may_pass)
+    if ahead_m < 0.0 and not is_free(
+        pos_ned, (pos_ned[0] + n * ahead_m, pos_ned[1] + e * ahead_m, pos_ned[2])
+    ):
+        ahead_m = 0.0
     target_ned = (
         goal_ned[0] if ahead_m >= away_m else pos_ned[0] + n * ahead_m,
         goal_ned[1] if ahead_m >= away_m else pos_ned[1] + e * ahead_m,
@@ -153,15 +168,19 @@ class _Axis:
         """The most that is wanted or flown: the stop from it is looked at."""
         return max(self.wanted_m_s, self.speed_m_s)
 
-    def asked(self, fits_m_s: float, last_m: float) -> tuple[float, float]:
+    def asked(self, fits_m_s: float, last_m: float, may_pass: bool) -> tuple[float, float]:
         """The speed to fly at, where the stop fits from `fits_m_s`, and how far ahead of the
-        reported position to send it for that; to the goal where that is within `last_m`."""
-        pace, wanted_m_s = self.pace, self.wanted_m_s
-        speed_m_s = min(wanted_m_s, fits_m_s)
+        reported position to send it for that; to the goal where that is within `last_m`.
+
+        `may_pass`: there is room to fly past the goal."""
+        pace = self.pace
+        speed_m_s = min(self.wanted_m_s, fits_m_s)
         if self.left_m <= last_m:
             return speed_m_s, self.left_m
-        too_fast_m_s = max(0.0, self.speed_m_s - fits_m_s)
-        asked_m_s = max(0.0, min(wanted_m_s, fits_m_s - FIRM * too_fast_m_s))
+        limit_m_s = fits_m_s if may_pass else speed_m_s
+        too_fast_m_s = max(0.0, self.speed_m_s - limit_m_s)
+        back_m_s = max(0.0, min(self.speed_m_s, pace.back_m_s))
+        asked_m_s = max(-back_m_s, min(speed_m_s, limit_m_s - FIRM * too_fast_m_s))
         p, a = pace.follow_per_s, pace.follow_m_s2
         if asked_m_s <= a / p:
             return speed_m_s, self.flown_m + asked_m_s / p

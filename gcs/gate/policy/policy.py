@@ -79,7 +79,9 @@ class Pace(_Section, frozen=True):
     The speed asked for is at most `most_m_s`, no more than `gain_m_s` above the vehicle's own, and
     so low that the vehicle can slow down for its goal by `end_m_s2`.  The vehicle takes `lag_s` to
     follow a speed that falls.  The autopilot flies towards a position `d` metres away at
-    `follow_per_s` d, and no faster than it can slow down for it by `follow_m_s2`.
+    `follow_per_s` d, and no faster than it can slow down for it by `follow_m_s2`.  It flies up to
+    `past_m` past a goal for which it slows down by itself; where it may not, it is asked for less
+    speed than the law's as long as it is faster, and to fly back at up to `back_m_s`.
     """
 
     most_m_s: FromTenth
@@ -88,6 +90,8 @@ class Pace(_Section, frozen=True):
     lag_s: Annotated[float, Meta(ge=0.0, le=10.0)]
     follow_per_s: Annotated[float, Meta(ge=0.05, le=10.0)]
     follow_m_s2: Deceleration
+    past_m: Annotated[float, Meta(ge=0.0, le=100.0)]
+    back_m_s: Annotated[float, Meta(ge=0.0, le=10.0)]
 
 
 class Paces(_Section, frozen=True):
@@ -374,4 +378,6 @@ def _slowest(every: Sequence[Pace]) -> Pace:
         # Which autopilot follows faster: to it a position is nearer at the same speed.
         follow_per_s=max(p.follow_per_s for p in every),
         follow_m_s2=max(p.follow_m_s2 for p in every),
+        past_m=max(p.past_m for p in every),
+        back_m_s=min(p.back_m_s for p in every),
     )

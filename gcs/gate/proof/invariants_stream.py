@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from operator import sub
 from typing import Final
 
 from gcs.frames import Vec3
@@ -23,20 +24,22 @@ DEADMAN_NS: Final = SECOND_NS // 2
 
 
 def on_the_way(edge: Edge, sent_ned: Vec3, goal_ned: Vec3) -> bool:
-    """Straight between the vehicle and the goal, level and up or down apart; or as it was before,
-    where the position is too old."""
+    """Straight between the vehicle and the goal, level and up or down apart; or so far behind the
+    vehicle as it may be asked to fly back; or as it was before, where the position is too old."""
     here_ned, last = edge.after.pos_ned, edge.before.paced
     if here_ned is None or sent_ned == goal_ned:
         return sent_ned == goal_ned
     if edge.stale and last is not None and sent_ned == last.target_ned:
         return goal_ned == last.goal_ned
-    between = all(
-        min(a, b) - EXACT_M <= x <= max(a, b) + EXACT_M
-        for a, x, b in zip(here_ned, sent_ned, goal_ned, strict=True)
-    )
-    north_m, east_m = goal_ned[0] - here_ned[0], goal_ned[1] - here_ned[1]
-    n_m, e_m = sent_ned[0] - here_ned[0], sent_ned[1] - here_ned[1]
-    return between and abs(north_m * e_m - east_m * n_m) <= EXACT_M * math.hypot(north_m, east_m)
+    north_m, east_m, down_m = map(sub, goal_ned, here_ned)
+    n_m, e_m, d_m = map(sub, sent_ned, here_ned)
+    away_m, beside_m2 = math.hypot(north_m, east_m), abs(north_m * e_m - east_m * n_m)
+    ahead_m = (n_m * north_m + e_m * east_m) / away_m if away_m > 0.0 else math.hypot(n_m, e_m)
+    pace = edge.policy.pace_of(edge.after.autopilot).level
+    speed_m_s = math.hypot(*(edge.after.v_ned or (0.0, 0.0))[:2])
+    back_m = min(pace.back_m_s, speed_m_s) / pace.follow_per_s
+    level = -back_m - EXACT_M <= ahead_m <= away_m + EXACT_M and beside_m2 <= EXACT_M * away_m
+    return level and min(0.0, down_m) - EXACT_M <= d_m <= max(0.0, down_m) + EXACT_M
 
 
 def is_sample(edge: Edge, sent: SendSetpoint) -> bool:

@@ -45,6 +45,8 @@ from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.shares import examples
 
 HOME = (0.0, 0.0, 0.0)
+BACK_M = 2.5 / 0.95
+"""[pace.px4.level] back_m_s, follow_per_s."""
 RADIUS_M, CEILING_M = 20.0, 30.0
 MARGIN_M = 2.0
 
@@ -156,8 +158,8 @@ class Run:
         self.sent_ned = pos_ned
 
     def leads_to(self, sent_ned: Vec3, to_ned: Vec3) -> bool:
-        """There, or straight on the way there from the last report; or sent before, where that is
-        too old."""
+        """There, or straight on the way there from the last report, or as far behind it as a PX4
+        may be asked to fly back; or sent before, where that is too old."""
         here_ned = self.gate.pos_ned
         if sent_ned in (to_ned, self.sent_ned) or here_ned is None:
             return True
@@ -171,7 +173,11 @@ class Run:
         )
         level = [part for part in parts[:2] if part is not None]
         straight = not level or max(level) - min(level) < 1e-4
-        return beside and straight and all(-1e-6 <= p <= 1.0 + 1e-6 for p in parts if p is not None)
+        level_m = math.hypot(to_ned[0] - here_ned[0], to_ned[1] - here_ned[1])
+        back = 0.0 if level_m == 0.0 else BACK_M / level_m
+        ahead = all(-back - 1e-6 <= part <= 1.0 + 1e-6 for part in level)
+        up_or_down = parts[2] is None or -1e-6 <= parts[2] <= 1.0 + 1e-6
+        return beside and straight and ahead and up_or_down
 
     def as_it_came(self, permit: Permit) -> None:
         """A sample of a stream: one that came less than the dead-man's time ago."""

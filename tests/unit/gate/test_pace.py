@@ -101,13 +101,37 @@ class TestInOpenAir:
         assert sent.target_ned == pytest.approx(at(5, 0, 20))
 
 
-def test_one_too_fast_for_its_stop_is_asked_for_less_by_three_times_the_difference() -> None:
+def test_one_too_fast_for_its_stop_is_asked_for_less_by_four_times_the_difference() -> None:
     """25 m before the fence, 2 m of which are kept: w (1.4 + 1.2) + w^2 / 2 3.35 = 23 m for w =
     6.45 m/s, which is found to a hundredth of the 12 m/s wanted."""
     sent = field("px4").paced(at(147.9, 0, 20), at(125, 0, 20), at(7.5, 0, 0))
     assert sent.v_ned[1] == pytest.approx(6.45, abs=0.12)
-    asked_m_s = 4 * sent.v_ned[1] - 3 * 7.5
+    asked_m_s = 5 * sent.v_ned[1] - 4 * 7.5
     assert sent.target_ned[1] == pytest.approx(125 + asked_m_s / 0.95)
+
+
+def test_where_there_is_no_room_past_the_goal_it_is_asked_for_less_than_the_law() -> None:
+    """1.2 m/s, 1 m before its goal: 0.95 m/s; and 4 x 0.25 m/s less than that where 5 m past it are
+    less than 2 m before the fence."""
+    for radius_m, asked_m_s in ((60.0, 0.95), (26.0, -0.05)):
+        sent = field("px4", radius_m).paced(at(20, 0, 20), at(19, 0, 20), at(1.2, 0, 0))
+        assert sent.v_ned == pytest.approx(at(0.95, 0, 0))
+        assert sent.target_ned == pytest.approx(at(19 + asked_m_s / 0.95, 0, 20))
+
+
+def test_one_that_does_not_slow_down_is_asked_to_fly_back() -> None:
+    """2.5 m before the fence; no faster than it flies on, and at 2.5 m/s at the most."""
+    for speed_m_s, back_m_s in ((1.3, 1.3), (0.4, 0.4), (6.0, 2.5)):
+        sent = field("px4").paced(at(147.9, 0, 20), at(147.5, 0, 20), at(speed_m_s, 0, 0))
+        assert sent.target_ned == pytest.approx(at(147.5 - back_m_s / 0.95, 0, 20), abs=1e-6)
+    still = field("ardupilot").paced(at(147.9, 0, 20), at(147.5, 0, 20), at(1.3, 0, 0))
+    assert still.target_ned == at(147.5, 0, 20)
+
+
+def test_nobody_is_asked_to_fly_back_into_what_is_behind() -> None:
+    tower = Zone("tower", False, Circle((142.0, 0.0), 3.2), 0.0, 50.0)
+    sent = field("px4", RADIUS_M, tower).paced(at(147.9, 0, 20), at(147.5, 0, 20), at(6.0, 0, 0))
+    assert sent.target_ned == at(147.5, 0, 20)
 
 
 # ------------------------------------------------------------------------------- random fences

@@ -196,6 +196,8 @@ def test_another_autopilot_approaches_with_the_worst_of_each_number() -> None:
         ("lag_s", 0.0, 10.0, -0.01, 10.5),
         ("follow_per_s", 0.05, 10.0, 0.04, 10.5),
         ("follow_m_s2", 0.1, 50.0, 0.09, 50.5),
+        ("past_m", 0.0, 100.0, -0.01, 100.5),
+        ("back_m_s", 0.0, 10.0, -0.01, 10.5),
     ],
 )
 @pytest.mark.parametrize("axis", ["level", "vertical"])
@@ -210,17 +212,18 @@ def test_pace(axis: str, key: str, least: float, most: float, below: float, abov
 def test_another_autopilot_is_paced_by_the_slowest_of_each_number() -> None:
     """At the same speed a position is nearer to the one that follows faster."""
     level = {
-        "px4": (5.0, 3.0, 1.0, 0.2, 0.9, 4.0),
-        "ardupilot": (4.0, 6.0, 2.0, 0.7, 0.5, 8.0),
+        "px4": (5.0, 3.0, 1.0, 0.2, 0.9, 4.0, 6.0, 2.0),
+        "ardupilot": (4.0, 6.0, 2.0, 0.7, 0.5, 8.0, 3.0, 1.0),
     }
-    names = ("most_m_s", "gain_m_s", "end_m_s2", "lag_s", "follow_per_s", "follow_m_s2")
+    first = ("most_m_s", "gain_m_s", "end_m_s2", "lag_s")
+    names = (*first, "follow_per_s", "follow_m_s2", "past_m", "back_m_s")
     lines = "".join(
         f"[pace.{autopilot}.level]\n"
         + "".join(f"{name} = {x}\n" for name, x in zip(names, numbers, strict=True))
         for autopilot, numbers in level.items()
     )
     policy = parse_policy(lines, "my.toml")
-    assert policy.pace_of("betaflight").level == Pace(4.0, 3.0, 1.0, 0.7, 0.9, 8.0)
+    assert policy.pace_of("betaflight").level == Pace(4.0, 3.0, 1.0, 0.7, 0.9, 8.0, 6.0, 1.0)
 
 
 def test_another_autopilot_brakes_with_the_worst_of_each_number() -> None:
