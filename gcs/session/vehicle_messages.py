@@ -38,6 +38,8 @@ NODE = "link"
 OWN_BEATS_NS: Final = 1_500_000_000
 """Heartbeats come once a second: two vehicles that share a number are not taken for each other in
 turn."""
+MISSION_UNTOLD_NS: Final = 3_000_000_000
+"""A vehicle that tells of its mission does so once a second; a PX4 1.14 without one never does."""
 
 
 class VehicleMessages:
@@ -178,7 +180,7 @@ class VehicleMessages:
                 text = f"another vehicle has the number of {was}, which is not there any more"
                 work.append(Log(Level.WARNING, NODE, f"{text}: {parts.telemetry.label}"))
                 return work + parts.read_anew(parts.telemetry, now_ns)
-            return work + self._back(telemetry, beat, now_ns)
+            return work + self._back(telemetry, beat, now_ns) + self._untold_mission(now_ns)
         if telemetry is not None:
             return work
         work += self._meet(link, frame, beat, now_ns)
@@ -208,6 +210,14 @@ class VehicleMessages:
         parts.presence.back(telemetry, now_ns)
         log = Log(Level.INFO, NODE, f"vehicle {telemetry.label} is back")
         return [*parts.forget(telemetry), PlaceFence(), log, *parts.read_anew(telemetry, now_ns)]
+
+    def _untold_mission(self, now_ns: int) -> list[Work]:
+        """Ask for it, to know it before the vehicle asks whether it may arm."""
+        parts = self._parts
+        if now_ns - parts.met_ns < parts.times.real_ns(MISSION_UNTOLD_NS):
+            return []
+        assert parts.telemetry is not None
+        return parts.missions.ask_how_many(parts.view(parts.telemetry))
 
     def _is_another(self, telemetry: Telemetry, beat: m.Heartbeat, now_ns: int) -> bool:
         """Whether its heartbeats have become those of another autopilot or kind of vehicle: two in
