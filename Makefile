@@ -18,7 +18,7 @@ FEWER   := --hypothesis-profile quick
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo quick test thorough check lint types contracts clients real soak mutants bench messages wheel clean
+.PHONY: help demo quick test thorough check lint types contracts clients real soak oracles mutants bench messages wheel clean
 
 help: ## say what there is
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -55,6 +55,9 @@ real: $(TEST) ## fly a real PX4 and a real ArduCopter (docs/real.md), judged by 
 
 soak: $(TEST) ## the properties on new random examples, and the random runs as a whole (about 70 minutes and 15 GB on 2 cores)
 	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios tests/soak -n $(WORKERS)
+
+oracles: $(TEST) ## after moves and renames: does every frame, record, old audit, help and gate cell stay as it was?
+	$(BIN)/python -m tests.oracles $(ARGS)
 
 mutants: $(TEST) ## alter the gate in one place at a time: does a test notice? ARGS="vehicle --share 1/20" another part
 	$(BIN)/python -m tests.mutants $(ARGS)

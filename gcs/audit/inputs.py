@@ -11,7 +11,7 @@ from gcs.audit.messages import Attachments, Stored
 from gcs.gate.policy.parse import DEFAULT
 from gcs.record.seals import PartBegan, Seal
 from gcs.session.as_recorded import AsRecorded
-from gcs.session.inputs import Datagram, FileRead, Input, OtherInput
+from gcs.session.inputs import TAGS, Datagram, FileRead, Input, OtherInput
 from gcs.session.recorded import FaultKept, FileKept, Pieces, Start, attachment_name
 from gcs.wire.blanking import may_hold_key
 from gcs.wire.frame import Frame, Reason, split
@@ -27,7 +27,7 @@ Kept: TypeAlias = OtherInput | Start | Pieces | FaultKept | Seal | PartBegan
 NO_FRAME: Final = frozenset(reason.value for reason in Reason)
 """Why bytes are garbage; frames that are refused are recorded as such for other reasons."""
 
-_KINDS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(OtherInput)}
+_KINDS: dict[str, type[Any]] = {TAGS[kind]: kind for kind in get_args(OtherInput)}
 _KINDS |= {
     "Datagram": Pieces,
     "FileRead": FileKept,
@@ -37,7 +37,7 @@ _KINDS |= {
     "RecordPart": PartBegan,
 }
 _decoders = {name: msgspec.json.Decoder(kind) for name, kind in _KINDS.items()}
-_inputs: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Input)}
+_inputs: dict[str, type[Any]] = {TAGS[kind]: kind for kind in get_args(Input)}
 
 
 def kept_of(kind: str, data: bytes, attachments: Attachments) -> Kept:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
+from types import MappingProxyType
+from typing import Final, TypeAlias
 
 from gcs import ipc
 from gcs.session.as_recorded import AsRecorded
@@ -194,3 +196,27 @@ OtherInput: TypeAlias = (
 """What is recorded as an input of its own; a datagram is recorded frame by frame."""
 
 Input: TypeAlias = Datagram | OtherInput
+
+TAGS: Final[Mapping[type[Input], str]] = MappingProxyType(
+    {
+        Datagram: "Datagram",
+        LinkEvent: "LinkEvent",
+        OperatorJoined: "OperatorJoined",
+        OperatorLine: "OperatorLine",
+        OperatorNoise: "OperatorNoise",
+        OperatorGone: "OperatorGone",
+        ClientCame: "ClientCame",
+        ClientGone: "ClientGone",
+        ClientFlooded: "ClientFlooded",
+        SignalCame: "SignalCame",
+        FileRead: "FileRead",
+        FileWritten: "FileWritten",
+        RecorderChanged: "RecorderChanged",
+        RecorderGrew: "RecorderGrew",
+        DiskLow: "DiskLow",
+        SimLine: "SimLine",
+        SimGone: "SimGone",
+        Wake: "Wake",
+    }
+)
+"""What a record calls each of them, whatever the class is called: old records are read by it."""

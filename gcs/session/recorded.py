@@ -18,7 +18,7 @@ from gcs.gate.effects import Level
 from gcs.report import AttachmentItem, FenceShape, InputItem, LogEvent, MetadataItem, StatusItem
 from gcs.session.clients import FIRST
 from gcs.session.effects import Effect, Emit, Record
-from gcs.session.inputs import Datagram, FileRead, Input, OtherInput
+from gcs.session.inputs import TAGS, Datagram, FileRead, Input, OtherInput
 from gcs.session.setup import Setup
 from gcs.session.telemetry import Telemetry
 from gcs.session.work import Log, Work
@@ -122,7 +122,7 @@ def recorded(given: OtherInput) -> list[Effect]:
                 Record(InputItem.of("FileRead", kept)),
             ]
         case _:
-            return [Record(InputItem.of(type(given).__name__, given))]
+            return [Record(InputItem.of(TAGS[type(given)], given))]
 
 
 def attachment_name(path: str, data: bytes) -> str:
@@ -140,7 +140,7 @@ def pieces(link: int, items: int, rest: bytes) -> Sequence[Effect]:
 
 def fault(given: Input, report: str, handled: bool, at_ns: int) -> Record:
     """See `FaultKept`.  Raises nothing: an input that has no JSON is left out."""
-    kind = type(given).__name__
+    kind = TAGS[type(given)]
     if isinstance(given, Datagram):
         given = Datagram(given.link, datagram_without_keys(given.data))
     try:
