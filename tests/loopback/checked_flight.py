@@ -10,6 +10,7 @@ import math
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
+from operator import sub
 from typing import Any
 from unittest import mock
 
@@ -36,6 +37,8 @@ ARM_DISARM = 400
 TAKE_OFF = 22
 FORCE = 21196.0
 ROUNDING_M = 1e-4
+BACK_M = 2.5 / 0.95
+"""[pace.px4.level] back_m_s, follow_per_s."""
 NEAR_GROUND_M = 0.3
 LAB_REST_M = 0.5
 """The lab's brake acts only beyond half a metre outside the cage."""
@@ -211,7 +214,8 @@ class CheckedFlight(Flight):
 
     def _leads_to(self, sent_ned: Vec3, to_ned: Vec3) -> bool:
         """It is that place, or straight between it and where the vehicle was reported, level and
-        up or down apart; or what was sent last, where the report is old."""
+        up or down apart, or so far behind it as a PX4 may be asked to fly back; or what was sent
+        last, where the report is old."""
         seen = self.session.telemetry
         if sent_ned == to_ned:
             return True
@@ -219,14 +223,15 @@ class CheckedFlight(Flight):
             return False
         if sent_ned == self._sent_ned:
             return True
-        north, east, down = (
-            (min(here, there) - ROUNDING_M <= sent <= max(here, there) + ROUNDING_M)
-            for here, sent, there in zip(seen.pos_ned, sent_ned, to_ned, strict=True)
+        way_n, way_e, way_d = map(sub, to_ned, seen.pos_ned)
+        n, e, d = map(sub, sent_ned, seen.pos_ned)
+        away_m = max(math.hypot(way_n, way_e), ROUNDING_M)
+        ahead_m, beside_m = (way_n * n + way_e * e) / away_m, abs(way_n * e - way_e * n) / away_m
+        level: bool = (
+            -BACK_M - ROUNDING_M <= ahead_m <= away_m + ROUNDING_M and beside_m <= ROUNDING_M
         )
-        way_n, way_e = to_ned[0] - seen.pos_ned[0], to_ned[1] - seen.pos_ned[1]
-        n, e = sent_ned[0] - seen.pos_ned[0], sent_ned[1] - seen.pos_ned[1]
-        beside_m = abs(way_n * e - way_e * n) / max(math.hypot(way_n, way_e), ROUNDING_M)
-        return north and east and down and beside_m <= ROUNDING_M
+        up_or_down: bool = min(0.0, way_d) - ROUNDING_M <= d <= max(0.0, way_d) + ROUNDING_M
+        return level and up_or_down
 
     def inside(self, pos_ned: Vec3, held: bool) -> bool:
         """Inside the fence as this file understands it: the lab's cage, or 150 m of home.
