@@ -2,6 +2,8 @@
 
 python -m tests.oracles            compare with what is kept in hashes.json
 python -m tests.oracles --write    keep what is so now
+python -m tests.oracles --record   make the records that are missing: where behaviour changes by
+                                   intention, those that differ are removed first
 
 What is kept: of each flight of `flights.py` the frames both ways, the record and what was told; of
 each record in `records/` what an audit finds; the gate's table; every command's help.
@@ -15,12 +17,16 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+import pytest
 from click import Command, Context, Group
 
 from gcs.cli.main import gcs as gcs_command
 from gcs.gate.machine.table import TABLE
+from gcs.record.compact import compact
+from gcs.record.writer import Recorder
 from tests.audits import audited, read
-from tests.loopback.flight import PERSONALITIES
+from tests.loopback.flight import PERSONALITIES, Flight
+from tests.loopback.observed import START_NS
 from tests.loopback.recorded_flights import flights_recorded
 from tests.oracles.flights import SCRIPTS
 from vehicle_sim.cli import main as sim_command
@@ -51,6 +57,22 @@ def flights() -> Iterator[tuple[str, str]]:
             yield f"{of}: told", digest(flight.told())
 
 
+def record() -> None:
+    """Each script in one file, flown by either autopilot in turn."""
+    for number, (name, script) in enumerate(SCRIPTS.items()):
+        personality = PERSONALITIES[(number + 1) % 2]
+        kept = RECORDS / f"{name}_{personality}.mcap"
+        if kept.exists():
+            continue
+        recorder = Recorder.open(RECORDS, name, "20260101-000000", START_NS, sealed=True)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(Flight, "new_recorder", lambda _, made=recorder: made)
+            flight = script(personality)
+        recorder.close(flight.now_ns)
+        compact(recorder.path)
+        recorder.path.rename(kept)
+
+
 def audits() -> Iterator[tuple[str, str]]:
     for path in sorted(RECORDS.glob("*.mcap")):
         messages, attachments = read(path)
@@ -78,6 +100,9 @@ def found() -> dict[str, str]:
 
 
 def main(words: list[str]) -> int:
+    if "--record" in words:
+        record()
+        return 0
     now = found()
     if "--write" in words:
         KEPT.write_text(json.dumps(now, indent=1) + "\n", encoding="utf-8")

@@ -106,7 +106,7 @@ class TestInOpenAir:
 
 def test_one_too_fast_for_its_stop_is_asked_for_less_by_four_times_the_difference() -> None:
     """25 m before the fence, 2 m of which are kept: w (1.4 + 1.2) + w^2 / 2 3.35 = 23 m for w =
-    6.45 m/s, which is found to a hundredth of the 12 m/s wanted."""
+    6.45 m/s, which is found to a hundredth of the 10 m/s wanted."""
     sent = field("px4").paced(at(147.9, 0, 20), at(125, 0, 20), at(7.5, 0, 0))
     assert sent.v_ned[1] == pytest.approx(6.45, abs=0.12)
     asked_m_s = 5 * sent.v_ned[1] - 4 * 7.5
