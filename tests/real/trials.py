@@ -15,7 +15,7 @@ from tests.real.truth import Vector
 Told = tuple[str, str]
 """The outcome, and what is wrong with it: empty if nothing."""
 REST_S = 60.0
-TAKEOFF_M = 0.2
+TAKEOFF_M = 0.35
 RETURN_M = 2.0
 
 

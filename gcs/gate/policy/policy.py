@@ -79,9 +79,9 @@ class Pace(_Section, frozen=True):
     The speed asked for is at most `most_m_s`, no more than `gain_m_s` above the vehicle's own, and
     so low that the vehicle can slow down for its goal by `end_m_s2`.  The vehicle takes `lag_s` to
     follow a speed that falls.  The autopilot flies towards a position `d` metres away at
-    `follow_per_s` d, and no faster than it can slow down for it by `follow_m_s2`.  It may fly
-    up to `past_m` past its goal; where that is too near to a boundary it is asked, as long as it is
-    too fast, to fly back at up to `back_m_s`.
+    `follow_per_s` d, and no faster than it can slow down for it by `follow_m_s2`.  With
+    room for `past_m` past its goal it is asked for less than its speed only where its stop does not
+    fit; without, as long as it is faster than the law, and to fly back at up to `back_m_s`.
     """
 
     most_m_s: FromTenth

@@ -49,7 +49,7 @@ BRAKED: Final = FLOWN_BY_US | {State.RETURNING}
 """Where a predicted breach is braked: a landing ends by itself, a held vehicle brakes already."""
 
 CRAWL_M_S: Final = 1.0
-HEIGHT_WITHIN_M: Final = 0.2
+HEIGHT_WITHIN_M: Final = 0.35
 LIFT_OFF_M: Final = 0.5
 """A mission begins on the ground: so low above where it stood the floor does not apply."""
 HOME_MOVED_M: Final = 1.0

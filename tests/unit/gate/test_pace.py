@@ -45,26 +45,24 @@ class TestInOpenAir:
     @pytest.mark.parametrize(
         ("autopilot", "v_m_s", "goal_m", "asked_m_s", "ahead_m"),
         [
-            # gain: 0 + 2.5 m/s, and 2.5 / 0.95 m
-            ("px4", 0.0, 100.0, 2.5, 2.63158),
+            # gain: 0 + 5 m/s, and 5 / 0.95 m
+            ("px4", 0.0, 100.0, 5.0, 5.26316),
             # most: 12 m/s, and 12 / 0.95 m
             ("px4", 10.0, 100.0, 12.0, 12.63158),
-            # one that is 1 m/s faster than asked is asked for 3 m/s less: 9 / 0.95 m
-            ("px4", 13.0, 100.0, 12.0, 9.47368),
-            # the end: sqrt(2 2 (5 - 2 / 2 0.95^2)); and 3.94562 - 3 (4.5 - 3.94562) = 2.28248 m/s
-            ("px4", 4.5, 5.0, 3.94562, 2.40261),
-            # no less than to stay where it is
-            ("px4", 6.0, 5.0, 3.94562, 0.0),
-            # and so near that it flies to the goal itself: 0.95 x 1.5 m/s, less 3 (1.6 - 1.425)
-            ("px4", 1.6, 1.5, 1.425, 0.94737),
+            # one that is faster is asked for no less: its stop fits
+            ("px4", 13.0, 100.0, 12.0, 12.63158),
+            # the end: sqrt(2 4 (10 - 4 / 2 0.95^2)), and by 0.95 / s of that ahead
+            ("px4", 7.0, 10.0, 7.89123, 8.30656),
+            # and so near that it flies to the goal itself: 0.95 x 1.5 m/s
+            ("px4", 1.6, 1.5, 1.425, 1.5),
             ("px4", 0.0, 1.5, 1.425, 1.5),
             # gain: 5 m/s, and 5^2 / 2 2.5 + 2.5 / 2 m
             ("ardupilot", 0.0, 100.0, 5.0, 6.25),
             # most: 11 m/s, and 11^2 / 2 2.5 + 1.25 m
             ("ardupilot", 8.0, 100.0, 11.0, 25.45),
-            # the end: sqrt(2 2.5 (5 - 2.5 / 2)) = 4.33013 m/s, and 4.33013 - 3 (4.5 - 4.33013) m/s,
-            # of which it is asked 3.82051^2 / 2 2.5 + 1.25 m ahead
-            ("ardupilot", 4.5, 5.0, 4.33013, 4.16926),
+            # the end: sqrt(2 2.5 (5 - 2.5 / 2)) = 4.33013 m/s, and 4.33013 - 4 (4.5 - 4.33013) m/s,
+            # of which it is asked 3.65065^2 / 2 2.5 + 1.25 m ahead
+            ("ardupilot", 4.5, 5.0, 4.33013, 3.91545),
         ],
     )
     def test_level(
@@ -98,25 +96,25 @@ class TestInOpenAir:
             assert open_air(autopilot).paced(goal, at(0, 0, 20), v_ned).target_ned == goal
 
     def test_another_autopilot_is_flown_by_the_slowest_of_every_figure(self) -> None:
-        """2.5 m/s, of which a PX4 is asked 2.5 / 0.95 m ahead; an ArduPilot follows 1 / s."""
+        """5 m/s; asked of one that follows by 1 / s and may slow down by 50 m/s2."""
         sent = open_air("betaflight").paced(at(100, 0, 20), at(0, 0, 20), STILL)
-        assert sent.v_ned == pytest.approx(at(2.5, 0, 0))
-        assert sent.target_ned == pytest.approx(at(2.5, 0, 20))
+        assert sent.v_ned == pytest.approx(at(5, 0, 0))
+        assert sent.target_ned == pytest.approx(at(5, 0, 20))
 
 
 def test_one_too_fast_for_its_stop_is_asked_for_less_by_four_times_the_difference() -> None:
     """25 m before the fence, 2 m of which are kept: w (1.4 + 1.2) + w^2 / 2 3.35 = 23 m for w =
-    6.45 m/s, which is found to a hundredth of the 10 m/s wanted."""
+    6.45 m/s, which is found to a hundredth of the 12 m/s wanted."""
     sent = field("px4").paced(at(147.9, 0, 20), at(125, 0, 20), at(7.5, 0, 0))
     assert sent.v_ned[1] == pytest.approx(6.45, abs=0.12)
     asked_m_s = 5 * sent.v_ned[1] - 4 * 7.5
     assert sent.target_ned[1] == pytest.approx(125 + asked_m_s / 0.95)
 
 
-def test_where_there_is_no_room_past_the_goal_it_is_asked_for_still_less() -> None:
-    """1.2 m/s, 1 m before its goal: 0.95 m/s, less 3 x 0.25 m/s; 4 x where 5 m past it are less
-    than 2 m before the fence."""
-    for radius_m, asked_m_s in ((60.0, 0.2), (26.0, -0.05)):
+def test_where_there_is_no_room_past_the_goal_it_is_asked_for_less_than_the_law() -> None:
+    """1.2 m/s, 1 m before its goal: 0.95 m/s; and 4 x 0.25 m/s less than that where 5 m past it are
+    less than 2 m before the fence."""
+    for radius_m, asked_m_s in ((60.0, 0.95), (26.0, -0.05)):
         sent = field("px4", radius_m).paced(at(20, 0, 20), at(19, 0, 20), at(1.2, 0, 0))
         assert sent.v_ned == pytest.approx(at(0.95, 0, 0))
         assert sent.target_ned == pytest.approx(at(19 + asked_m_s / 0.95, 0, 20))

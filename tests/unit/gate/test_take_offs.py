@@ -109,11 +109,11 @@ class TestTheEndOfTheClimb:
         script.wait(0.2)
         assert state_of(script) is State.TAKING_OFF
 
-    @pytest.mark.parametrize(("up", "how"), [(4.75, ""), (4.8125, "complete"), (5.25, "")])
-    def test_it_is_complete_within_a_fifth_of_a_metre_of_the_height(
+    @pytest.mark.parametrize(("up", "how"), [(4.625, ""), (4.6875, "complete"), (5.375, "")])
+    def test_it_is_complete_nearer_to_its_height_than_the_arrival_radius(
         self, up: float, how: str
     ) -> None:
-        """The arrival radius is half a metre."""
+        """That is half a metre; a PX4 may rest 0.28 m beside its height."""
         script, request_id = self.climbed(4.25)
         self.gained(script)
         script.at(0.0, 0.0, up)
