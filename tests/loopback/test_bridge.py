@@ -8,7 +8,7 @@ import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.states import Control, State
-from tests.loopback.bridged import STATION, BridgedFlight, Client
+from tests.loopback.bridged import ARRIVES_M, STATION, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality
 
 ACCEPTED, REJECTED, DENIED = 0, 1, 2
@@ -54,7 +54,7 @@ def test_a_client_flies_a_square_and_lands(personality: Personality) -> None:
     flight.until(lambda: flight.is_in(State.MOVING), 1)
     assert [ack.result for ack in client.acks(192)] == [ACCEPTED]
     flight.until(lambda: flight.is_in(State.HOVERING))
-    assert flight.truth_enu()[1] == pytest.approx(10, abs=0.7)
+    assert flight.truth_enu()[1] == pytest.approx(10, abs=ARRIVES_M[personality])
     assert client.ask(LAND) == ACCEPTED
     flight.until(lambda: flight.is_in(State.GROUNDED) and not flight.vehicle.armed, 60)
 

@@ -13,7 +13,7 @@ from gcs.gate.condition import Condition, Severity
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.report import AttachmentItem, DecisionItem
-from tests.loopback.bridged import BRIDGE
+from tests.loopback.bridged import ARRIVES_M, BRIDGE
 from tests.loopback.fleet import (
     ACCEPTED,
     ARM,
@@ -44,8 +44,8 @@ def test_one_client_flies_both_by_their_system_ids(links: int) -> None:
     flight.send_to(client, 2, 0, 12, 7)
     flight.until(flight.each(lambda n: flight.state_of(n) is State.MOVING), 2)
     flight.until(flight.each(lambda n: flight.state_of(n) is State.HOVERING))
-    assert flight.place_enu(1) == pytest.approx((8, 0, 5), abs=0.8)
-    assert flight.place_enu(2) == pytest.approx((0, 12, 7), abs=0.8)
+    assert flight.place_enu(1) == pytest.approx((8, 0, 5), abs=ARRIVES_M["px4"])
+    assert flight.place_enu(2) == pytest.approx((0, 12, 7), abs=ARRIVES_M["px4"])
     acks = [(ack.get_srcSystem(), ack.result) for ack in client.acks(REPOSITION)]
     assert acks == [(1, ACCEPTED), (2, ACCEPTED)]
 
@@ -60,8 +60,8 @@ def test_a_goal_for_one_never_moves_the_other() -> None:
         flight.reaches(sysid, State.MOVING, 2)
         flight.reaches(sysid, State.HOVERING)
         client.beat()
-        assert flight.place_enu(sysid)[1] == pytest.approx(10, abs=0.8)
-        assert flight.place_enu(3 - sysid) == pytest.approx(before, abs=0.5)
+        assert flight.place_enu(sysid)[1] == pytest.approx(10, abs=ARRIVES_M["px4"])
+        assert flight.place_enu(3 - sysid) == pytest.approx(before, abs=ARRIVES_M["px4"])
         decided = flight.recorded(DecisionItem, since_ns)
         assert {item.vehicle for item in decided if item.word == "goto"} == {sysid}
 
@@ -164,7 +164,7 @@ def test_one_that_is_lost_does_not_disturb_the_other() -> None:
     flight.send_to(client, 2, 0, 10, 5)
     flight.reaches(2, State.MOVING, 2)
     flight.reaches(2, State.HOVERING)
-    assert flight.place_enu(2)[1] == pytest.approx(10, abs=0.8)
+    assert flight.place_enu(2)[1] == pytest.approx(10, abs=ARRIVES_M["px4"])
     flight.silent = set()
     flight.beating(3)
     assert flight.state_of(1) in (State.HOLDING, State.EXTERNAL, State.HOVERING)

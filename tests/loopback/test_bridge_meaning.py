@@ -13,7 +13,7 @@ import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.states import Control, State
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import ARRIVES_M, VEHICLE, BridgedFlight, Client
 from tests.loopback.copies import fly_or_copy
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import PlanFlight, Pymavlink, mission
@@ -57,7 +57,7 @@ def north_of_home(flight: BridgedFlight, metres: float) -> tuple[float, float, f
 def arrives(flight: BridgedFlight, north_m: float) -> None:
     flight.until(lambda: flight.is_in(State.MOVING), 3)
     flight.until(lambda: flight.is_in(State.HOVERING), 30)
-    assert flight.truth_enu()[1] == pytest.approx(north_m, abs=1.0)
+    assert flight.truth_enu()[1] == pytest.approx(north_m, abs=ARRIVES_M[flight.personality])
 
 
 @both

@@ -39,8 +39,8 @@ def northward(client: Client, times: int) -> None:
 
 
 def rests(flight: BridgedFlight) -> None:
-    """It has stopped, which takes an ArduPilot at full speed 6 s, and stays where it is."""
-    flight.beating(8.0)
+    """It has stopped, which takes a vehicle at full speed 6 to 10 s, and stays where it is."""
+    flight.beating(12.0)
     before = flight.truth_enu()
     flight.beating(3.0)
     assert math.dist(before, flight.truth_enu()) < 0.3

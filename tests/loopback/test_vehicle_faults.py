@@ -229,8 +229,9 @@ def test_a_dead_motor_is_held_against_and_ends_on_the_ground(personality: Person
         flight.run(10.0)
         assert (flight.outcome(goal) or "").startswith("aborted")
         assert flight.truth_enu()[2] < 0.5
-        expected = {"px4": State.HOLDING, "ardupilot": State.GROUNDED}
-        assert flight.is_in(expected[personality])
+        # Then a PX4's own failsafe may take over, if it falls over far enough.
+        assert State.HOLDING.name in flight.states()
+        assert personality == "px4" or flight.is_in(State.GROUNDED)
 
 
 def test_a_lost_cell_sends_it_home_by_the_stations_own_severity() -> None:

@@ -45,6 +45,7 @@ Group = tuple[str, tuple[str, ...], Callable[[Fact], bool]]
 GROUPS: tuple[Group, ...] = (
     ("a_brake_h_m_s2", ("steady",), lambda fact: fact["direction"] not in ("up", "down")),
     ("a_brake_h_m_s2", ("gaining",), lambda fact: fact["direction"] not in ("up", "down")),
+    ("a_brake_h_m_s2", ("slowing",), lambda fact: fact["direction"] not in ("up", "down")),
     ("a_brake_v_m_s2 up", ("steady", "gaining"), lambda fact: fact["direction"] == "up"),
     ("a_brake_v_m_s2 down", ("steady", "gaining"), lambda fact: fact["direction"] == "down"),
 )
@@ -59,6 +60,8 @@ def report() -> str:
         braking = DEFAULT.braking_of(personality)
         for name, kinds, chosen in GROUPS:
             records = [f for f in facts(personality) if f["kind"] in kinds and chosen(f)]
+            if not records:
+                continue
             level = "_h_" in name
             brake = braking.a_brake_h_m_s2 if level else braking.a_brake_v_m_s2
             error = braking.position_error_h_m if level else braking.position_error_v_m

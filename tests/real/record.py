@@ -3,7 +3,8 @@
     python -m tests.real record px4 FILE --folder DIR
 
 Flown without the gate.  A stop begins with the command of the mode: "steady" from a velocity that
-it has had for a while, "gaining" on its way to a far position, when it passes the speed.  Written:
+it has had for a while, "gaining" on its way to a far position, when it passes the speed, "slowing"
+when it has slowed down to it from a high speed, sent to where it was then.  Written:
 speed and distance by truth, and by the vehicle's own estimate, which is all that a gate has.
 """
 
@@ -28,11 +29,13 @@ UNITS: dict[str, Vector] = {
     name: (e / math.hypot(e, n), n / math.hypot(e, n), 0.0) for name, (e, n) in COMPASS.items()
 } | {"up": (0.0, 0.0, 1.0), "down": (0.0, 0.0, -1.0)}
 SPEEDS_H = tuple(range(1, 13))
+SPEEDS_SLOWING = (0.5, 1.0, 1.5, 2.0, 3.0, 5.0)
+SLOWING_FROM_M_S = 10.0
 SPEEDS_UP = (1.0, 2.0, 3.0)
 SPEEDS_DOWN = (0.7, 1.0, 1.5)
 LEGS_M = (5, 10, 20, 40, 58, 100)
 
-PARTS = ("steady", "gaining", "vertical", "legs")
+PARTS = ("steady", "gaining", "slowing", "vertical", "legs")
 
 Fact = dict[str, Any]
 
@@ -59,6 +62,11 @@ def begin(vehicle: Vehicle, direction: str, speed_m_s: float, how: str) -> None:
         here = vehicle.estimate.position_enu
         vehicle.to_position((here[0] + far[0], here[1] + far[1], here[2] + far[2]))
         vehicle.until(lambda: vehicle.now.speed_m_s >= speed_m_s, 12.0)
+    elif how == "slowing":
+        begin(vehicle, direction, SLOWING_FROM_M_S, "steady")
+        assert vehicle.estimate is not None
+        vehicle.to_position(vehicle.estimate.position_enu)
+        vehicle.until(lambda: along(unit, (0, 0, 0), vehicle.now.velocity_enu) <= speed_m_s, 12.0)
     else:
         vehicle.to_velocity(times(unit, speed_m_s))
         vehicle.until(lambda: vehicle.now.speed_m_s >= 0.93 * speed_m_s, 3.0 + speed_m_s)
@@ -167,9 +175,10 @@ def programme(part: str, repeats: int) -> list[tuple[str, str, float]]:
     """What is flown: kind, direction, speed or length.  Opposite ways follow each other."""
     compass = list(COMPASS)
     rows: list[tuple[str, str, float]] = []
-    if part in ("steady", "gaining"):
+    if part in ("steady", "gaining", "slowing"):
+        speeds = SPEEDS_SLOWING if part == "slowing" else SPEEDS_H
         for round_number in range(repeats // 2):
-            for index, speed in enumerate(SPEEDS_H):
+            for index, speed in enumerate(speeds):
                 start = 2 * ((index + round_number) % 4)
                 rows += [(part, name, float(speed)) for name in compass[start : start + 2]]
     elif part == "vertical":

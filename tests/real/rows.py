@@ -24,7 +24,7 @@ class Row:
     goal_m: float = 0.0  # how far out the goal is, from home, or how high
     radius_m: float = 60.0
     ceiling_m: float = 40.0
-    trouble: str = ""  # kill, blackout, delay, loss, other-station, gps; see approaches.py
+    trouble: str = ""  # kill, blackout, delay, loss, other-station, gps, hold; see trials.py
     figure: float = 0.0  # of the kind or the trouble: m/s, m, s, a share
     when: float = 0.0  # the trouble begins: a share of the leg's time
     word: str = ""  # of the kind: what is asked for, or what a client tries
@@ -133,6 +133,17 @@ def stops(rng: random.Random) -> list[Row]:
     ]  # fmt: skip
 
 
+def held_at_the_end() -> list[Row]:
+    """Told to hold so many metres before a goal near the fence: just after it has slowed down."""
+    legs = ((57.0, 57.7, 60.0), (147.8, 147.8, 150.0))
+    return [
+        Row("approach", direction=direction, leg_m=leg, goal_m=goal, radius_m=radius,
+            ceiling_m=50.0, trouble="hold", figure=before_m)
+        for before_m, direction in zip((0.3, 0.7, 1.2, 2.0, 4.0, 8.0), EIGHT, strict=False)
+        for leg, goal, radius in legs
+    ]  # fmt: skip
+
+
 def states() -> list[Row]:
     back = [
         Row("way back", direction=direction, leg_m=24.0, goal_m=64.0) for direction in ("E", "NW")
@@ -185,7 +196,7 @@ def whole(kind: Kind, seed: int, count: int) -> list[list[Row]]:
         known(kind),
         approaches(kind, rng, count),
         ground(),
-        [*stops(rng), *states()],
+        [*stops(rng), *held_at_the_end(), *states()],
         troubles,
         [*missions(), *hostile()],
     ]

@@ -48,6 +48,8 @@ def approach(flight: Flight, row: Row) -> Told:
             trouble(flight, row)
 
     timer = threading.Timer(row.when * (2.0 + row.leg_m / 6.0), happen)
+    if row.trouble == "hold":
+        timer = threading.Timer(0.0, hold_before, (flight, row))
     if row.trouble:
         timer.start()
     told = pilot.goto(goal)
@@ -80,6 +82,13 @@ def trouble(flight: Flight, row: Row) -> None:
             flight.observer.mode(flight.kind.hold_custom_mode)
         case "gps":
             gps(flight, works=False)
+
+
+def hold_before(flight: Flight, row: Row) -> None:
+    """Asks to hold when the goal is nearer than the figure, by truth."""
+    goal, pilot = row.at(row.goal_m), flight.library(row)
+    if flight.observer.wait(lambda: math.dist(flight.from_home, goal) < row.figure, 60.0):
+        outcome_of(lambda: pilot.station.hold(wait=False))
 
 
 def gps(flight: Flight, *, works: bool) -> None:

@@ -5,12 +5,14 @@ takes longer from a higher speed than slowing down for the goal does.  So what i
 is a position on the way to the goal, just so far ahead of the vehicle that the autopilot flies
 towards it at the speed of this law, and slows down for it by itself where no other one follows.
 What has held a PX4 against its drag is left in its integrator when it has slowed down: asked for no
-speed it went on at 1.3 m/s for 2 s, and its brake by 1.8 m from 0.6 m/s.  Near a boundary it is
-asked to fly back, no faster than it flies on and by up to `back`, until it does slow down.
+speed it went on at 1.3 m/s for 2 s, and after 10 m/s its hold took 2.4 to 3.5 m from under 1 m/s.
+The integrator takes 4.5 s to follow.  So where there is no room past the goal it is flown no faster
+than `near`, and asked to fly back, no faster than it flies on and by up to `back`, until it does
+slow down.
 
 The speed is the least of
 
-    most                              the policy's, `[pace]`
+    most, or near                     the policy's, `[pace]`: with room past the goal, or without
     v + gain                          it grows no faster than that, so the vehicle leans little
     p d,  or sqrt(2 a (d - a / 2 p^2)) for d > a / p^2
                                       a gentle end: d metres before the goal it slows down by a
@@ -44,7 +46,8 @@ there is no room past its goal, one that is faster than the law.  Recorded on PX
 whose drag keeps it fast: 147.8 m to 2.2 m before the fence ended 1.1 m outside with 1, 0.9 and
 1.2 m inside with 3.  In open air it slows down as by itself: else it took a third longer."""
 LAST_M: Final = 0.5
-"""So near to its goal the goal itself is sent, where the stop from the speed of that fits."""
+"""So near to its goal the goal itself is sent, where the stop from the speed of that fits; where no
+stop fits, too: that speed is below CRAWL_M_S."""
 CRAWL_M_S: Final = 1.0
 """The speed of one that is where no stop fits, such as outside: its verified way leads inside."""
 HALVINGS: Final = 7
@@ -79,8 +82,6 @@ def paced(
     away_m = math.hypot(north, east)
     n, e = (north / away_m, east / away_m) if away_m > 0.0 else (0.0, 0.0)
     sign = math.copysign(1.0, down)
-    level = _Axis(rules.level, away_m, v_ned[0] * n + v_ned[1] * e, late_s)
-    vertical = _Axis(rules.vertical, abs(down), v_ned[2] * sign, late_s)
 
     braking = bounds.policy.braking_of(bounds.autopilot)
     here_ned = (
@@ -109,6 +110,8 @@ def paced(
         goal_ned[2] + past_v_m,
     )
     may_pass = past_ned != goal_ned and is_free(goal_ned, past_ned)
+    level = _Axis(rules.level, away_m, v_ned[0] * n + v_ned[1] * e, late_s, may_pass)
+    vertical = _Axis(rules.vertical, abs(down), v_ned[2] * sign, late_s, may_pass)
 
     def stop_fits(share: float) -> bool:
         fast_h_m_s = share * level.most_m_s + beside_h_m_s
@@ -123,14 +126,14 @@ def paced(
         return is_free(here_ned, stop_ned)
 
     share = _largest_share(stop_fits)
-    last_m = LAST_M if share >= 1.0 else 0.0
+    last_m = 0.0 if 0.0 < share < 1.0 else LAST_M
     if share > 0.0:
         fits_h_m_s, fits_v_m_s = share * level.most_m_s, share * vertical.most_m_s
     else:
         crawl = CRAWL_M_S / max(math.hypot(level.wanted_m_s, vertical.wanted_m_s), CRAWL_M_S)
         fits_h_m_s, fits_v_m_s = crawl * level.wanted_m_s, crawl * vertical.wanted_m_s
-    level_m_s, ahead_m = level.asked(fits_h_m_s, last_m, may_pass)
-    vertical_m_s, up_or_down_m = vertical.asked(fits_v_m_s, last_m, may_pass)
+    level_m_s, ahead_m = level.asked(fits_h_m_s, last_m)
+    vertical_m_s, up_or_down_m = vertical.asked(fits_v_m_s, last_m)
     behind_ned = (
         pos_ned[0] + n * min(0.0, ahead_m),
         pos_ned[1] + e * min(0.0, ahead_m),
@@ -148,12 +151,14 @@ def paced(
 
 @dataclass(frozen=True, slots=True)
 class _Axis:
-    """Level or vertical: `left_m` to the goal, at `speed_m_s` towards it."""
+    """Level or vertical: `left_m` to the goal, at `speed_m_s` towards it; `may_pass`: there is room
+    to fly past it."""
 
     pace: Pace
     left_m: float
     speed_m_s: float
     late_s: float
+    may_pass: bool
 
     @property
     def flown_m(self) -> float:
@@ -168,23 +173,22 @@ class _Axis:
         a = min(pace.end_m_s2, pace.follow_m_s2)
         near_m = a / (p * p)
         end_m_s = p * left_m if left_m <= near_m else math.sqrt(2.0 * a * (left_m - near_m / 2.0))
-        return min(pace.most_m_s, max(0.0, self.speed_m_s) + pace.gain_m_s, end_m_s)
+        most_m_s = pace.most_m_s if self.may_pass else pace.near_m_s
+        return min(most_m_s, max(0.0, self.speed_m_s) + pace.gain_m_s, end_m_s)
 
     @property
     def most_m_s(self) -> float:
         """The most that is wanted or flown: the stop from it is looked at."""
         return max(self.wanted_m_s, self.speed_m_s)
 
-    def asked(self, fits_m_s: float, last_m: float, may_pass: bool) -> tuple[float, float]:
+    def asked(self, fits_m_s: float, last_m: float) -> tuple[float, float]:
         """The speed to fly at, where the stop fits from `fits_m_s`, and how far ahead of the
-        reported position to send it for that; to the goal where that is within `last_m`.
-
-        `may_pass`: there is room to fly past the goal."""
+        reported position to send it for that; to the goal where that is within `last_m`."""
         pace = self.pace
         speed_m_s = min(self.wanted_m_s, fits_m_s)
         if self.left_m <= last_m:
             return speed_m_s, self.left_m
-        limit_m_s = fits_m_s if may_pass else speed_m_s
+        limit_m_s = fits_m_s if self.may_pass else speed_m_s
         too_fast_m_s = max(0.0, self.speed_m_s - limit_m_s)
         back_m_s = max(0.0, min(self.speed_m_s, pace.back_m_s))
         asked_m_s = max(-back_m_s, min(speed_m_s, limit_m_s - FIRM * too_fast_m_s))

@@ -59,7 +59,7 @@ MUST: Final[Mapping[Severity, Event]] = MappingProxyType(
 """What a severity demands.  At TERMINATE the gate commands no more than landing."""
 
 
-GOALS_WAIT_IN: Final = frozenset({State.HOVERING, State.VERIFYING, State.MOVING})
+GOALS_WAIT_IN: Final = frozenset({State.TAKING_OFF, State.HOVERING, State.VERIFYING, State.MOVING})
 """Where a go-to may wait for its tick; one that waits when another state is entered is refused."""
 
 

@@ -170,6 +170,7 @@ GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
         Guard.MISSION_GOES_ON: _mission_goes_on,
         Guard.ARRIVED: progress.arrived,
         Guard.AT_HEIGHT: progress.at_height,
+        Guard.NEARLY_AT_HEIGHT: progress.nearly_at_height,
         Guard.CLIMB_ENDED_ELSEWHERE: progress.climb_ended_elsewhere,
         Guard.CLIMBS_TOO_HIGH: progress.climbs_too_high,
         Guard.POSITION_CLEARS: lambda turn: verifying.position(turn) is None,

@@ -21,6 +21,9 @@ HEIGHT_WITHIN_M = 0.35
 """A take-off is complete so near the height that was asked for, whatever the arrival radius.  A
 PX4 1.14.3 that is sent its height in OFFBOARD rested up to 0.28 m beside it (recorded)."""
 
+LAST_SHARE = 0.1
+"""Of a climb.  DroneKit's scripts fly on at 95 % of it."""
+
 OVERSHOOT_M = 1.0
 """How far above its top, the arrival radius added, a climb may overshoot."""
 
@@ -80,6 +83,15 @@ def at_height(turn: Turn) -> bool:
         return _shows_hold(turn) or _slow(turn)
     ends_there = -(radius_m + memory.climb_ends_within_m) < above_m < 0.0
     return ends_there and _shows_hold(turn) and _slow(turn)
+
+
+def nearly_at_height(turn: Turn) -> bool:
+    """In the last tenth of the climb, or within the arrival radius of its top."""
+    memory, above_m = turn.memory, _above_top_m(turn)
+    if above_m is None or memory.ground_down_m is None:
+        return False
+    climb_m = memory.ground_down_m - memory.top_ned[2]
+    return above_m > -max(turn.policy.arrival.radius_m, LAST_SHARE * climb_m)
 
 
 def climb_ended_elsewhere(turn: Turn) -> bool:

@@ -50,6 +50,11 @@ wait_for_tick: Final = Branch(needs=(Check.SEVERITY,), reply=Reply.PENDING)
 replace_goal_if_policy_allows: Final = Branch(
     when=(Guard.RETARGET_ALLOWED,), needs=(Check.SEVERITY,), reply=Reply.PENDING
 )
+wait_for_top_if_near: Final = Branch(
+    when=(Guard.RETARGET_ALLOWED, Guard.NEARLY_AT_HEIGHT),
+    needs=(Check.SEVERITY,),
+    reply=Reply.PENDING,
+)
 end_own_stream_and_wait_for_tick: Final = Branch(
     when=(Guard.OWN_STREAM,),
     needs=(Check.SEVERITY,),
@@ -123,7 +128,7 @@ REQUEST_TO_FLY_ROWS: Final[Mapping[Event, Row]] = {
         during(NO_VEHICLE, then=refuse(Code.NO_VEHICLE)),
         during(STALE, then=refuse(Code.STALE)),
         during(GROUNDED, then=refuse(Code.NOT_FLYING)),
-        during(TAKING_OFF, then=refuse(Code.BUSY)),
+        during(TAKING_OFF, then=(wait_for_top_if_near, refuse(Code.BUSY))),
         during(HOVERING, then=wait_for_tick),
         during(VERIFYING, then=cannot_happen),
         during(MOVING, then=(replace_goal_if_policy_allows, refuse(Code.BUSY))),

@@ -46,6 +46,7 @@ class Guard(StrEnum):
     GOAL_ACTIVE = "a goal is being flown"
     ARRIVED = "it arrived"
     AT_HEIGHT = "it reached the height"
+    NEARLY_AT_HEIGHT = "it has nearly reached the height"
     CLIMB_ENDED_ELSEWHERE = "the climb ended elsewhere"
     CLIMBS_TOO_HIGH = "it climbs above the height"
     RETURNS_TO_FLIGHT = "a position too old interrupted its flight"

@@ -81,10 +81,12 @@ class Pace(_Section, frozen=True):
     follow a speed that falls.  The autopilot flies towards a position `d` metres away at
     `follow_per_s` d, and no faster than it can slow down for it by `follow_m_s2`.  With
     room for `past_m` past its goal it is asked for less than its speed only where its stop does not
-    fit; without, as long as it is faster than the law, and to fly back at up to `back_m_s`.
+    fit.  Without, it is asked for `near_m_s` at most, for less than its speed as long as it is
+    faster than the law, and to fly back at up to `back_m_s`.
     """
 
     most_m_s: FromTenth
+    near_m_s: FromTenth
     gain_m_s: FromTenth
     end_m_s2: Deceleration
     lag_s: Annotated[float, Meta(ge=0.0, le=10.0)]
@@ -372,6 +374,7 @@ class Policy(_Section, frozen=True):
 def _slowest(every: Sequence[Pace]) -> Pace:
     return Pace(
         most_m_s=min(p.most_m_s for p in every),
+        near_m_s=min(p.near_m_s for p in every),
         gain_m_s=min(p.gain_m_s for p in every),
         end_m_s2=min(p.end_m_s2 for p in every),
         lag_s=max(p.lag_s for p in every),

@@ -87,8 +87,8 @@ def keeps_nothing_refused(edge: Edge) -> Iterator[str]:
 
 
 def takes_goals_where_it_hovers(edge: Edge) -> Iterator[str]:
-    """4: a goal is taken in HOVERING; in MOVING by policy, from the owner of the one flown; in
-    STREAMING from the client whose stream it ends."""
+    """4: a goal is taken in HOVERING; in MOVING, and near the top of a climb, by policy from the
+    owner of what is flown; in STREAMING from the client whose stream it ends."""
     if not isinstance(edge.request, GoTo):
         return
     if not edge.accepted and edge.after.pending != edge.given:
@@ -100,8 +100,20 @@ def takes_goals_where_it_hovers(edge: Edge) -> Iterator[str]:
     if state is State.STREAMING:
         if edge.given.source != edge.before.streamer:
             yield f"a goal of {edge.given.source} is taken in the stream of another"
+    elif state is State.TAKING_OFF and replaces:
+        yield from _near_its_top(edge)
     elif state is not State.HOVERING and not (state is State.MOVING and replaces):
         yield f"a goal is taken in {state.name} from {edge.given.source}, flown for {owner}"
+
+
+def _near_its_top(edge: Edge) -> Iterator[str]:
+    before, radius_m = edge.before, edge.policy.arrival.radius_m
+    assert before.pos_ned is not None
+    assert before.ground_down_m is not None
+    climb_m = before.ground_down_m - before.top_ned[2]
+    climbed_m = before.ground_down_m - before.pos_ned[2]
+    if climbed_m <= 0.9 * climb_m - 1e-9 and climbed_m <= climb_m - radius_m:
+        yield f"a goal is taken {climbed_m} m up on a climb of {climb_m} m"
 
 
 def decides_goals_under_control(edge: Edge) -> Iterator[str]:

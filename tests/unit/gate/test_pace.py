@@ -120,6 +120,13 @@ def test_where_there_is_no_room_past_the_goal_it_is_asked_for_less_than_the_law(
         assert sent.target_ned == pytest.approx(at(19 + asked_m_s / 0.95, 0, 20))
 
 
+def test_to_a_goal_without_room_past_it_it_is_flown_slower() -> None:
+    """5 m and 2 m before the fence are 7 m."""
+    for goal_m, asked_m_s in ((142.9, 12.0), (143.1, 8.0)):
+        sent = field("px4").paced(at(goal_m, 0, 20), at(-100, 0, 20), at(9, 0, 0))
+        assert sent.v_ned == pytest.approx(at(asked_m_s, 0, 0))
+
+
 def test_one_that_does_not_slow_down_is_asked_to_fly_back() -> None:
     """2.5 m before the fence; no faster than it flies on, and at 2.5 m/s at the most."""
     for speed_m_s, back_m_s in ((1.3, 1.3), (0.4, 0.4), (6.0, 2.5)):

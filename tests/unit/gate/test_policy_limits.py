@@ -191,6 +191,7 @@ def test_another_autopilot_approaches_with_the_worst_of_each_number() -> None:
     ("key", "least", "most", "below", "above"),
     [
         ("most_m_s", 0.1, MOST, 0.09, MOST + 1),
+        ("near_m_s", 0.1, MOST, 0.09, MOST + 1),
         ("gain_m_s", 0.1, MOST, 0.09, MOST + 1),
         ("end_m_s2", 0.1, 50.0, 0.09, 50.5),
         ("lag_s", 0.0, 10.0, -0.01, 10.5),
@@ -212,10 +213,10 @@ def test_pace(axis: str, key: str, least: float, most: float, below: float, abov
 def test_another_autopilot_is_paced_by_the_slowest_of_each_number() -> None:
     """At the same speed a position is nearer to the one that follows faster."""
     level = {
-        "px4": (5.0, 3.0, 1.0, 0.2, 0.9, 4.0, 6.0, 2.0),
-        "ardupilot": (4.0, 6.0, 2.0, 0.7, 0.5, 8.0, 3.0, 1.0),
+        "px4": (5.0, 2.0, 3.0, 1.0, 0.2, 0.9, 4.0, 6.0, 2.0),
+        "ardupilot": (4.0, 4.0, 6.0, 2.0, 0.7, 0.5, 8.0, 3.0, 1.0),
     }
-    first = ("most_m_s", "gain_m_s", "end_m_s2", "lag_s")
+    first = ("most_m_s", "near_m_s", "gain_m_s", "end_m_s2", "lag_s")
     names = (*first, "follow_per_s", "follow_m_s2", "past_m", "back_m_s")
     lines = "".join(
         f"[pace.{autopilot}.level]\n"
@@ -223,7 +224,7 @@ def test_another_autopilot_is_paced_by_the_slowest_of_each_number() -> None:
         for autopilot, numbers in level.items()
     )
     policy = parse_policy(lines, "my.toml")
-    assert policy.pace_of("betaflight").level == Pace(4.0, 3.0, 1.0, 0.7, 0.9, 8.0, 6.0, 1.0)
+    assert policy.pace_of("betaflight").level == Pace(4.0, 2.0, 3.0, 1.0, 0.7, 0.9, 8.0, 6.0, 1.0)
 
 
 def test_another_autopilot_brakes_with_the_worst_of_each_number() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import pytest
 
 from gcs.gate.effects import CommandKind, Ruling, SendCommand, Verdict
@@ -12,6 +14,7 @@ from gcs.gate.states import Control, FlightMode, LandedState, State
 from tests.unit.gate.reactions import (
     HELD,
     Reaction,
+    default_policy,
     elsewhere,
     ended,
     reaction,
@@ -159,6 +162,46 @@ class TestTheEndOfTheClimb:
         assert script.verdict(goal).ruling is Ruling.ACCEPTED
         assert script.gate.active_goal_ned == (0.0, 3.0, -5.0)
         assert ended(script, request_id) == "superseded SUPERSEDED"
+
+    @pytest.mark.parametrize(
+        ("retarget", "up", "refused"),
+        [
+            ("replace", 9.0625, None),
+            ("replace", 8.9375, Code.BUSY),  # not in the last tenth of the climb
+            ("refuse", 9.5, Code.BUSY),
+        ],
+    )
+    def test_a_goal_in_the_last_tenth_of_the_climb_waits_for_its_end(
+        self, retarget: Literal["replace", "refuse"], up: float, refused: Code | None
+    ) -> None:
+        """DroneKit's scripts send one at 95 % of the height, once."""
+        script = Script(default_policy(retarget=retarget), "ardupilot")
+        request_id = take_off(script, 10.0)
+        script.land_state(LandedState.IN_AIR)
+        script.at(0.0, 0.0, up, (0.0, 0.0, 1.0))
+        goal = script.goto(3.0, 0.0, 10.0)
+        script.tick()
+        told = {v.request_id: v.refusal and v.refusal.code for v in script.all(Verdict)}
+        assert told.get(goal) is refused
+        assert state_of(script) is State.TAKING_OFF
+        script.at(0.0, 0.0, 10.0)
+        script.v_ned = (0.0, 0.0, 0.0)
+        script.wait(1.1)
+        script.heartbeat(FlightMode.GUIDED)
+        script.tick()
+        flown_ned = None if refused else (0.0, 3.0, -10.0)
+        assert (script.gate.active_goal_ned == flown_ned) is (refused is None)
+        assert (ended(script, request_id) == "superseded SUPERSEDED") is (refused is None)
+
+    def test_it_is_refused_where_the_climb_is_stopped(self) -> None:
+        script = Script(default_policy(retarget="replace"), "ardupilot")
+        take_off(script, 10.0)
+        script.land_state(LandedState.IN_AIR)
+        script.at(0.0, 0.0, 9.5, (0.0, 0.0, 1.0))
+        goal = script.goto(3.0, 0.0, 10.0)
+        script.ask(Hold())
+        assert script.verdict(goal).ruling is Ruling.SUPERSEDED
+        assert state_of(script) is State.HOLDING
 
     def test_it_is_refused_where_control_is_not_had_in_time(self) -> None:
         script, _ = self.climbed(4.25)
