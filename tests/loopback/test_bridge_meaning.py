@@ -12,6 +12,7 @@ import math
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
+from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import Control, State
 from tests.loopback.bridged import ARRIVES_M, VEHICLE, BridgedFlight, Client
 from tests.loopback.copies import fly_or_copy
@@ -229,6 +230,36 @@ def test_dronekits_simple_goto() -> None:
     arrives(flight, 10)
     assert flight.truth_enu()[2] == pytest.approx(6, abs=0.7)
     assert [ack.type for ack in client.messages("MISSION_ACK")] == [ACCEPTED]
+
+
+@pytest.mark.parametrize("form", ["mission item", "position", "reposition"])
+def test_dronekits_simple_goto_at_95_percent_of_its_take_off(form: str) -> None:
+    """Its scripts take off and wait for 95 % of the height; then they send a goal once."""
+    flight = PlanFlight("ardupilot", policy=parse_policy('retarget = "replace"', "clients.toml"))
+    client = flight.join()
+    flight.connected()
+    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
+    assert client.ask(TAKE_OFF, 0, 0, 0, 0, 0, 0, 10.0) == ACCEPTED
+    flight.until(lambda: flight.truth_enu()[2] > 9.5, 30)
+    assert flight.is_in(State.TAKING_OFF)
+    lat, lon, alt = north_of_home(flight, 10)
+    if form == "mission item":
+        client.send(
+            dialect.MAVLink_mission_item_message(
+                *VEHICLE, 0, 3, 16, 2, 0, 0, 0, 0, 0, lat, lon, 10.0
+            )
+        )
+    elif form == "position":
+        client.send(
+            dialect.MAVLink_set_position_target_local_ned_message(
+                0, *VEHICLE, 1, 0xDF8, 10.0, 0.0, -10.0, 0, 0, 0, 0, 0, 0, 0, 0
+            )
+        )
+    else:
+        client.fly_to(lat, lon, alt + 10)
+    arrives(flight, 10)
+    assert flight.truth_enu()[2] == pytest.approx(10, abs=0.7)
+    assert [one.word for one in flight.decisions("refused")] == []
 
 
 def test_dronekits_simple_goto_out_of_the_fence() -> None:
