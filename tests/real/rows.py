@@ -135,7 +135,7 @@ def stops(rng: random.Random) -> list[Row]:
 
 def held_at_the_end() -> list[Row]:
     """Told to hold so many metres before a goal near the fence: just after it has slowed down."""
-    legs = ((57.0, 57.7, 60.0), (147.8, 147.8, 150.0))
+    legs = ((57.0, 57.7, 60.0), (147.8, 147.8, 150.0), (280.0, 147.8, 150.0))
     return [
         Row("approach", direction=direction, leg_m=leg, goal_m=goal, radius_m=radius,
             ceiling_m=50.0, trouble="hold", figure=before_m)

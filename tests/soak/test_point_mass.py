@@ -106,7 +106,7 @@ def test_it_slows_down_as_late_as_its_lag_and_no_harder_than_its_approach(autopi
     """Sent a position 4 m ahead at 5 m/s: the speed that it is to have there is what its autopilot
     flies at 4 m away, 0.95 x 4 m/s (px4) or sqrt(2 x 2.5 (4 - 2.5 / 2)) m/s (ardupilot)."""
     wanted_m_s = {"px4": 3.8, "ardupilot": 3.70810}[autopilot]
-    lag_s, most_m_s2 = {"px4": (1.2, 5.0), "ardupilot": (0.6, 2.0)}[autopilot]
+    lag_s, most_m_s2 = {"px4": (2.5, 5.0), "ardupilot": (0.6, 2.0)}[autopilot]
     vehicle = flying(autopilot, 5.0)
     flies_until(vehicle, 15.0)
     here = vehicle.reported()[0]

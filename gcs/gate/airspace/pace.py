@@ -20,10 +20,10 @@ The speed is the least of
                                       the stop of a hold from w fits, straight on from here
 
 `react` and `a_brake` are the policy's `[braking]`, `late` is how old the reported position is, and
-`lag` is how much later than asked the vehicle slows down: what it is faster by then is in the last
-row.  Where there is room past the goal, one that is faster than the least of these, but not than
-its stop fits from, slows down by itself: recorded on PX4 1.14.3, legs of 58 m, 7.3 s to within 1 m
-and 2.1 m past the goal, where the bare goal takes 7.3 s and is passed by 2.0 to 2.6 m.
+`lag` is how much later than asked the vehicle slows down, what its integrator carries on included.
+Where there is room past the goal, one that is faster than the least of these, but not than its stop
+fits from, slows down by itself: recorded on PX4 1.14.3, legs of 58 m, 7.3 s to within 1 m and 2.1 m
+past the goal, where the bare goal takes 7.3 s and is passed by 2.0 to 2.6 m.
 """
 
 from __future__ import annotations
@@ -126,8 +126,8 @@ def paced(
         return is_free(here_ned, stop_ned)
 
     share = _largest_share(stop_fits)
-    last_m = 0.0 if 0.0 < share < 1.0 else LAST_M
-    if share > 0.0:
+    last_m = LAST_M if share is None or share >= 1.0 else 0.0
+    if share is not None:
         fits_h_m_s, fits_v_m_s = share * level.most_m_s, share * vertical.most_m_s
     else:
         crawl = CRAWL_M_S / max(math.hypot(level.wanted_m_s, vertical.wanted_m_s), CRAWL_M_S)
@@ -183,27 +183,29 @@ class _Axis:
 
     def asked(self, fits_m_s: float, last_m: float) -> tuple[float, float]:
         """The speed to fly at, where the stop fits from `fits_m_s`, and how far ahead of the
-        reported position to send it for that; to the goal where that is within `last_m`."""
+        reported position to send it for that; to the goal where that is within `last_m`, unless it
+        is asked to fly back."""
         pace = self.pace
         speed_m_s = min(self.wanted_m_s, fits_m_s)
-        if self.left_m <= last_m:
-            return speed_m_s, self.left_m
         limit_m_s = fits_m_s if self.may_pass else speed_m_s
         too_fast_m_s = max(0.0, self.speed_m_s - limit_m_s)
         back_m_s = max(0.0, min(self.speed_m_s, pace.back_m_s))
         asked_m_s = max(-back_m_s, min(speed_m_s, limit_m_s - FIRM * too_fast_m_s))
+        if self.left_m <= last_m and asked_m_s >= 0.0:
+            return speed_m_s, self.left_m
         p, a = pace.follow_per_s, pace.follow_m_s2
         if asked_m_s <= a / p:
             return speed_m_s, self.flown_m + asked_m_s / p
         return speed_m_s, self.flown_m + asked_m_s * asked_m_s / (2.0 * a) + a / (2.0 * p * p)
 
 
-def _largest_share(fits: Callable[[float], bool]) -> float:
-    """The largest share of the speed from which the stop fits; 0 where it does from none."""
+def _largest_share(fits: Callable[[float], bool]) -> float | None:
+    """The largest share of the speed from which the stop fits; None where not even that from rest
+    does."""
     if fits(1.0):
         return 1.0
     if not fits(0.0):
-        return 0.0
+        return None
     low, high = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
