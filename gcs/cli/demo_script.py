@@ -104,7 +104,7 @@ SCRIPT: Final[tuple[Step, ...]] = (
     Step("mission upload {mission}", say="A mission file: verified whole, uploaded, read back."),
     Step("mission start"),
     Step(
-        "goto 23.5 0 4",
+        "goto 22 0 4",
         say="Towards the fence: at each moment no faster than a stop still fits.",
     ),
     Step("land", say="Down again."),

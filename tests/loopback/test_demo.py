@@ -150,7 +150,7 @@ def test_the_last_table_has_the_whole_story(path: Path) -> None:
     assert len(story) == len(SCRIPT)
     assert story.count("refused") == 4
     assert story.count("accepted aborted") == 1
-    to_the_fence = next(row for row in table["rows"] if row["request"] == "goto 23.5 0 4")
+    to_the_fence = next(row for row in table["rows"] if row["request"] == "goto 22 0 4")
     assert to_the_fence["ending"] == "complete"
 
 

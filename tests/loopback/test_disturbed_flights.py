@@ -154,7 +154,8 @@ def test_a_position_that_jumps_is_held_and_verified_anew(personality: Personalit
     assert flight.vehicle.mode_name == HOLDS[personality]
     assert (0.0, 20.0, -3.0) not in {s.pos_ned for s in flight.setpoints(jumped_ns)}
     assert flight.done(flight.say("resume")) == "complete"
-    assert math.dist(flight.truth_enu(), at_enu) < 5.0
+    # A PX4 at 5 m/s, 1 s after its start, is stopped in 7.9 to 8.8 m (recorded).
+    assert math.dist(flight.truth_enu(), at_enu) < 9.0
 
 
 def test_a_second_station_with_our_id_is_told() -> None:
