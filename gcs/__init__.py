@@ -11,14 +11,16 @@ As a Python library it flies through the same station process as the command lin
         station.land()
 
 `gcs.connect` joins the station that has the link open already, if one runs; what it returns is in
-`gcs/operator/station.py`, what is raised in `gcs/operator/failures.py`.  Nothing of it is loaded
-before it is asked for.
+`gcs/operator/station.py`, what is raised in `gcs/operator/failures.py`.
+`gcs.columns(path, "LOCAL_POSITION_NED")` gives the messages of one kind of a finished .mcap or
+.tlog as a numpy array.  Nothing of it is loaded before it is asked for.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from gcs.logfile.columns.read import columns
     from gcs.operator.connect import connect
     from gcs.operator.failures import (
         CannotConnect,
@@ -32,9 +34,10 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 _HOME = {
-    "connect": "connect",
-    "Operation": "station",
-    "Station": "station",
+    "columns": "gcs.logfile.columns.read",
+    "connect": "gcs.operator.connect",
+    "Operation": "gcs.operator.station",
+    "Station": "gcs.operator.station",
 }
 __all__ = [
     "CannotConnect",
@@ -45,6 +48,7 @@ __all__ = [
     "Refused",
     "Station",
     "StationDiffers",
+    "columns",
     "connect",
 ]
 
@@ -54,5 +58,5 @@ if not TYPE_CHECKING:
     def __getattr__(name: str) -> object:
         """The library, loaded when it is used: every start of `gcs` imports this module."""
         if name in __all__:
-            return getattr(import_module(f"gcs.operator.{_HOME.get(name, 'failures')}"), name)
+            return getattr(import_module(_HOME.get(name, "gcs.operator.failures")), name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -37,3 +37,21 @@ def as_on_the_wire(value: float) -> float:
     except OverflowError:
         return math.inf
     return rounded
+
+
+def quat_from_euler(
+    roll_rad: float, pitch_rad: float, yaw_rad: float
+) -> tuple[float, float, float, float]:
+    """ATTITUDE's angles (yaw-pitch-roll, NED <- FRD) as w, x, y, z.
+
+    Diebel, "Representing Attitude" (2006), eq. 290 for the 1-2-3 sequence.
+    """
+    cr, sr = math.cos(roll_rad / 2), math.sin(roll_rad / 2)
+    cp, sp = math.cos(pitch_rad / 2), math.sin(pitch_rad / 2)
+    cy, sy = math.cos(yaw_rad / 2), math.sin(yaw_rad / 2)
+    return (
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    )

@@ -52,6 +52,6 @@ def load_policy(
 def _check_names(rules: BridgeRules) -> NameFault | None:
     if not (rules.extra_denied or rules.extra_harmless or rules.manual_modes):
         return None
-    from gcs.bridge.guard.names import check_names  # the dialect takes 0.1 s to load
+    from gcs.bridge.setup_policy.names import check_names
 
     return check_names(rules)

@@ -2,7 +2,7 @@
 
 The session makes these, `gcs/record` writes them into the MCAP.  `LogEvent` and `FenceShape` go
 to the operator as they are; for the other facts that the operator is told, `gcs/ipc.py` has the
-shorter line that goes through the pipe, and `gcs/session/teller.py` makes that line of the fact.
+shorter line that goes through the pipe, and `gcs/session/announcements.py` makes that line.
 
 Positions that come from the vehicle or go to it are as MAVLink has them (NED, metres, radians);
 what a person reads is in the operator's frame (ENU, metres).  The messages and JSON schemas of

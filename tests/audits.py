@@ -13,10 +13,10 @@ from gcs.audit.files import SessionFiles
 from gcs.audit.messages import INPUT_TOPIC, Attachments, Stored
 from gcs.record.writer import Recorder
 from gcs.session.effects import Effect, Record
-from gcs.session.incoming import FramesRaisedError
 from gcs.session.inputs import Input, Wake
-from gcs.session.session import Session
 from gcs.session.setup import Setup
+from gcs.station.frame_intake import FramesRaisedError
+from gcs.station.session import Session
 
 VERSION = "test"
 

@@ -6,14 +6,14 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-from gcs.audit import words
+from gcs.audit import describe
 from gcs.audit.compare import Pair, Scope, differing
 from gcs.audit.keys import forged
 from gcs.audit.messages import Attachments, Stored
 from gcs.audit.replay import Replay
 from gcs.audit.seals import Altered, Missing
 from gcs.audit.turns import RecorderTurn, Turn, Turns
-from gcs.session.recorded import Start
+from gcs.vehicle.record_items import Start
 
 KEPT_DIFFERENCES = 1_000
 """So many are told; all are counted."""
@@ -135,12 +135,12 @@ class _Audit:
     def _turn(self, turn: Turn, replay: Replay) -> None:
         given, recorded = turn.given, turn.messages
         reproduced = replay.turn(given, turn.now_ns, forged(recorded) if self._scope.signed else ())
-        self._inputs[words.kind_of_input(given)] += 1
+        self._inputs[describe.kind_of_input(given)] += 1
         self._end_ns = turn.now_ns
         if isinstance(given, RecorderTurn):
             # A seal counts and sums up what was before it; Turns has looked at it.
             recorded, reproduced = recorded[1:], reproduced[1:]
-        self._compared.update(map(words.kind_of_message, self._scope.of(recorded)))
+        self._compared.update(map(describe.kind_of_message, self._scope.of(recorded)))
         for surprise in replay.surprises:
             self._difference(turn, "course", surprise.recorded, surprise.reproduced)
         for pair in differing(recorded, reproduced, self._scope, cut=turn.cut):
@@ -152,10 +152,10 @@ class _Audit:
         if self._result.differences >= KEPT_DIFFERENCES:
             self._result.differences += 1
             return
-        self._difference(turn, words.kind_of_message(one), *words.told_pair(pair))
+        self._difference(turn, describe.kind_of_message(one), *describe.told_pair(pair))
 
     def _difference(self, turn: Turn, kind: str, recorded: str, reproduced: str) -> None:
-        after = words.told_input(turn.given)
+        after = describe.told_input(turn.given)
         self._note(
             Difference(self._t_s(turn.now_ns), turn.now_ns, kind, after, recorded, reproduced)
         )

@@ -21,7 +21,7 @@ from gcs.audit.messages import (
 )
 from gcs.record.reading import Condition, Message, Reading
 from gcs.record.seals import PartBegan
-from gcs.session.recorded import Start
+from gcs.vehicle.record_items import Start
 
 Progress = Callable[[Path, Condition], None]
 

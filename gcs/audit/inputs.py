@@ -12,7 +12,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.record.seals import PartBegan, Seal
 from gcs.session.as_recorded import AsRecorded
 from gcs.session.inputs import TAGS, Datagram, FileRead, Input, OtherInput
-from gcs.session.recorded import FaultKept, FileKept, Pieces, Start, attachment_name
+from gcs.vehicle.record_items import FaultKept, FileKept, Pieces, Start, attachment_name
 from gcs.wire.blanking import may_hold_key
 from gcs.wire.frame import Frame, Reason, split
 

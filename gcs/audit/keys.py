@@ -12,7 +12,7 @@ from typing import Final
 from gcs.audit.messages import Stored
 from gcs.config import StationConfig
 from gcs.report import Direction
-from gcs.session.signatures import Keys
+from gcs.station.signatures import Keys
 from gcs.wire.frame import SIGNED
 from gcs.wire.signing import Reason
 

@@ -13,8 +13,8 @@ from gcs.audit.turns import Given, RecorderTurn, Unreadable
 from gcs.record.writer import Recorder
 from gcs.session.effects import Effect, Finish, ReadFile, Record, WriteFile
 from gcs.session.inputs import FileRead, FileWritten, Input
-from gcs.session.recorded import FaultKept, Start
-from gcs.session.session import Session
+from gcs.station.session import Session
+from gcs.vehicle.record_items import FaultKept, Start
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,7 @@ from gcs.audit.messages import INPUT_TOPIC, Attachments, InputMessage, Stored
 from gcs.audit.seals import Altered, Missing, SealCheck
 from gcs.record.seals import PartBegan, Seal
 from gcs.session.inputs import ClientCame, Input
-from gcs.session.recorded import FaultKept, Pieces, Start
+from gcs.vehicle.record_items import FaultKept, Pieces, Start
 
 
 class RecorderTurn(Enum):

@@ -11,16 +11,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
 
-from gcs.bridge.client import Client
-from gcs.bridge.control import ControlServer
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import OfVehicle
 from gcs.bridge.judge.judge import Judge
 from gcs.bridge.judge.received import Judged, Look, Received
-from gcs.bridge.meaning.meaning import Seen
-from gcs.bridge.needed_rates import Rates
-from gcs.bridge.pending_requests import From
+from gcs.bridge.peers.client import Client
+from gcs.bridge.peers.control import ControlServer
+from gcs.bridge.rates.needed_rates import Rates
+from gcs.bridge.rates.thinned_streams import ThinnedStreams
 from gcs.bridge.routing import TARGETS, readdressed, target_of
-from gcs.bridge.thinned_streams import ThinnedStreams
+from gcs.bridge.translate.meaning import Seen
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.effects import Address
 from gcs.wire.frame import Frame

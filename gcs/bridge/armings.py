@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 
 from gcs import ipc
 from gcs.bridge.addressing import Judges
-from gcs.bridge.client import Exchange, of_vehicle
 from gcs.bridge.effects import BridgeEffect
+from gcs.bridge.peers.client import Exchange, of_vehicle
 from gcs.gate.refusal import Refusal
 
 

@@ -12,10 +12,8 @@ from typing import Final
 from gcs import ipc
 from gcs.bridge.addressing import Given, Judges, LookAt
 from gcs.bridge.armings import Armings
-from gcs.bridge.classes import Kind, message_row
-from gcs.bridge.client import Client, Exchange, of_vehicle
-from gcs.bridge.client_heartbeats import ClientHeartbeats
-from gcs.bridge.control import ControlServer
+from gcs.bridge.catalog import Kind, message_row
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import (
     Answers,
     AsksVehicle,
@@ -29,13 +27,15 @@ from gcs.bridge.effects import (
 from gcs.bridge.judge.climbs import asks_for_height, climbs
 from gcs.bridge.judge.plans import of_plan
 from gcs.bridge.judge.received import Judged
-from gcs.bridge.needed_rates import Rates
-from gcs.bridge.pending_requests import From
-from gcs.bridge.refused_addresses import RefusedAddresses, WhyNotOurs, nobody_else
+from gcs.bridge.peers.client import Client, Exchange, of_vehicle
+from gcs.bridge.peers.client_heartbeats import ClientHeartbeats
+from gcs.bridge.peers.control import ControlServer
+from gcs.bridge.peers.refused_addresses import RefusedAddresses, WhyNotOurs, nobody_else
+from gcs.bridge.peers.unheard_clients import Unheard
+from gcs.bridge.peers.unverified_clients import Unverified
+from gcs.bridge.rates.needed_rates import Rates
+from gcs.bridge.rates.thinned_streams import ThinnedStreams
 from gcs.bridge.routing import Routes, target_of
-from gcs.bridge.thinned_streams import ThinnedStreams
-from gcs.bridge.unheard_clients import Unheard
-from gcs.bridge.unverified_clients import Unverified
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.autopilot import Autopilot

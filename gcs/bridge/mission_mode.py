@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gcs.bridge.meaning.chosen_before_arming import MISSION_MODE
+from gcs.bridge.translate.chosen_before_arming import MISSION_MODE
 from gcs.gate.refusal import Code, Refusal
 
 SHOWN_NS: Final = 3_000_000_000

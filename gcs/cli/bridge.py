@@ -37,10 +37,10 @@ def _explained(name: str, policy: str) -> str:
 
     Raises ExitError where there is none, and for a policy that is none.
     """
-    from gcs.bridge.classes.explain import explain, explanation
-    from gcs.bridge.guard.explain import parameter_explanation, policy_explanation
-    from gcs.bridge.meaning.explain import meaning_explanation
-    from gcs.bridge.meaning.explain_modes import mode_explanation
+    from gcs.bridge.catalog.explain import explain, explanation
+    from gcs.bridge.setup_policy.explain import parameter_explanation, policy_explanation
+    from gcs.bridge.translate.explain import meaning_explanation
+    from gcs.bridge.translate.explain_modes import mode_explanation
     from gcs.exit_codes import ExitCode
     from gcs.operator.errors import ExitError
     from gcs.policy_file import PolicyFileError, load_policy

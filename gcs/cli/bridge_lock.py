@@ -59,7 +59,7 @@ def lock_vehicle(
     from gcs.protocol.lock_setup import LockSetup
     from gcs.shell.clock import Clock
 
-    fence = fence_of(options.policy, options.own_sysid) if options.set_fence else None
+    fence = fence_of(options.policy) if options.set_fence else None
     sysid, key = vehicle or 0, None
     if key_file:
         key = read_key_file(key_file)
@@ -95,20 +95,20 @@ def _not_locked(setup: LockSetup, url: str) -> ExitError | None:
     return ExitError(ExitCode.USAGE, text, hint)
 
 
-def fence_of(policy: str, own_sysid: int) -> FenceSize:
+def fence_of(policy: str) -> FenceSize:
     """The policy's fence as a cylinder about home, as the vehicle's failsafes are judged by it.
 
     Raises ExitError for a policy that is none.
     """
+    from gcs.gate.policy.cylinder import cylinder_of
     from gcs.policy_file import PolicyFileError, load_policy
     from gcs.protocol.lock_parameters import FenceSize
-    from gcs.session.failsafes import limits_of
 
     try:
-        limits = limits_of(load_policy(policy)[0], own_sysid)
+        about_home = cylinder_of(load_policy(policy)[0])
     except PolicyFileError as error:
         raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
-    return FenceSize(limits.reach_m, limits.ceiling_up_m)
+    return FenceSize(about_home.reach_m, about_home.ceiling_up_m)
 
 
 def _told(setup: LockSetup, options: LockOptions) -> list[str]:

@@ -6,13 +6,13 @@ import msgspec
 
 from gcs.flight_report.findings.finding import Check, Finding
 from gcs.flight_report.flight import Flight, Totals, VehicleFlight
+from gcs.flight_report.number_format import utc
 from gcs.flight_report.summary import (
     first_trouble,
     vehicle_name,
     what_happened,
     what_went_wrong,
 )
-from gcs.flight_report.words import utc
 
 
 class VehicleReport(msgspec.Struct):

@@ -13,10 +13,10 @@ from typing import TypeAlias
 from gcs.flight_report.fence_svg import fence_from_above, fence_from_aside, zone_outline
 from gcs.flight_report.flight import Flight, Request, VehicleFlight
 from gcs.flight_report.html_text import text
+from gcs.flight_report.number_format import clock
 from gcs.flight_report.projection import Box, View, box_of, ticks
 from gcs.flight_report.summary import first_trouble
 from gcs.flight_report.track import TrackPoint
-from gcs.flight_report.words import clock
 from gcs.frames import Vec3
 
 WIDTH_PX = 640.0

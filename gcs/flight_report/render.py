@@ -15,6 +15,7 @@ from gcs.flight_report.charts import ChartData, chart_data
 from gcs.flight_report.findings.finding import Finding
 from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.html_text import script_json, text
+from gcs.flight_report.number_format import duration, metres, utc
 from gcs.flight_report.path_svg import path_pictures
 from gcs.flight_report.summary import (
     consequences,
@@ -27,7 +28,6 @@ from gcs.flight_report.summary import (
     what_went_wrong,
 )
 from gcs.flight_report.timeline_html import timeline
-from gcs.flight_report.words import duration, metres, utc
 
 _PLACE = re.compile(r"\{\{(\w+)\}\}")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs.flight_report.findings.finding import Finding
 from gcs.flight_report.flight import Flight, VehicleFlight
-from gcs.flight_report.words import clock, count, duration, metres, sentence
+from gcs.flight_report.number_format import clock, count, duration, metres, sentence
 
 _NAMES = {"px4": "PX4", "ardupilot": "ArduPilot"}
 CONSEQUENCES_WITHIN_S = 15.0

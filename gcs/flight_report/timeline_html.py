@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.html_text import text
 from gcs.flight_report.lanes import Lane, Span
-from gcs.flight_report.words import clock
+from gcs.flight_report.number_format import clock
 
 SHORTEST_SHARE = 0.004
 """Of the whole record: a state that is shorter is not seen, and hides the name of the next."""

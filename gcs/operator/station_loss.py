@@ -1,7 +1,7 @@
 """What is known of a vehicle whose station process has died: its own setting for that.
 
 Nobody asks it for anything any more, and nothing can be read of it: what counts is what the last
-snapshot has of its failsafes (`gcs/session/failsafes.py` words them).
+snapshot has of its failsafes (`gcs/vehicle/parameters/failsafes.py` words them).
 """
 
 from __future__ import annotations

@@ -8,18 +8,35 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from gcs import ipc
 from gcs.operator.failures import Disconnected, NotCompleted
 
-if TYPE_CHECKING:
-    from gcs.operator.station import Operation, Station
-
 PERIOD_S = 0.1
 """From one sample to the next: five of them count at a time."""
+
+
+class Running(Protocol):
+    """The operation of a stream: whether it is under way, and how it has ended."""
+
+    @property
+    def state(self) -> str: ...
+    def wait(self, timeout_s: float | None = None) -> object: ...
+
+
+class Streaming(Protocol):
+    """What a stream needs of the station."""
+
+    stream_verdict: ipc.StreamVerdictEvent | None
+
+    def request(
+        self, ask: ipc.Ask, wait: bool = True, timeout_s: float | None = None
+    ) -> Running: ...
+    def tell(self, command: ipc.Command) -> None: ...
+    def wait_until(self, done: Callable[[], bool], timeout_s: float | None) -> None: ...
 
 
 class Stream:
@@ -28,9 +45,9 @@ class Stream:
     East, north and up are metres, and metres per second; yaw is degrees clockwise from north.
     """
 
-    def __init__(self, station: Station) -> None:
+    def __init__(self, station: Streaming) -> None:
         self._station = station
-        self._operation: Operation | None = None
+        self._operation: Running | None = None
 
     def __enter__(self) -> Stream:
         self._station.stream_verdict = None

@@ -21,7 +21,7 @@ from gcs.record import ros1
 from gcs.record.backend import Backend, Channel, Log, best_backend
 from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, NoFile, Opener, open_exclusive
-from gcs.record.news import RecordLost, RecordNews, RecordResumed, RecordRotated
+from gcs.record.recorder_status import RecordLost, RecordNews, RecordResumed, RecordRotated
 from gcs.record.rotation import NEVER, Rotation
 from gcs.record.seals import PartBegan, Seal
 from gcs.record.topics import INPUT_TOPIC, Out

@@ -11,6 +11,9 @@ from gcs.gate import requests
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import Autopilot, mode_named
 
+FIRST = 1
+"""The operator's program that started the station."""
+
 
 @dataclass(frozen=True, slots=True)
 class Asked:

@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator, Sequence
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
-from gcs.session.clients import FIRST
 from gcs.session.effects import EVERYONE
 from gcs.session.inputs import (
     Input,
@@ -24,6 +23,7 @@ from gcs.session.inputs import (
     OperatorLine,
     OperatorNoise,
 )
+from gcs.session.requests import FIRST
 
 MAX_CLIENTS = 16
 MAX_ACCEPTS_A_TURN = 4

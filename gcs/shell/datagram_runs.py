@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from gcs.session.inputs import Datagram
-from gcs.session.vehicle_frames import MOST_IN_TURN
+from gcs.vehicle.received_frames import MOST_IN_TURN
 from gcs.wire.frame import Frame, plain_frames
 
 MAX_RUN = 8192

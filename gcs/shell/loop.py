@@ -15,7 +15,6 @@ from typing import Protocol, TypeAlias
 
 from gcs import ipc
 from gcs.resources import MissionNotFoundError, find
-from gcs.session.clients import FIRST
 from gcs.session.effects import (
     EVERYONE,
     ClientVerified,
@@ -29,7 +28,6 @@ from gcs.session.effects import (
     Transmit,
     WriteFile,
 )
-from gcs.session.incoming import FramesRaisedError
 from gcs.session.inputs import (
     Datagram,
     FileRead,
@@ -44,6 +42,7 @@ from gcs.session.inputs import (
     SimLine,
     Wake,
 )
+from gcs.session.requests import FIRST
 from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
@@ -54,6 +53,7 @@ from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 from gcs.shell.sockets import Link
 from gcs.shell.topic_stream import TopicStream
+from gcs.station.frame_intake import FramesRaisedError
 
 MAX_PLAN_BYTES = 16 << 20
 MAX_DATAGRAMS_A_TURN = 256

@@ -28,9 +28,7 @@ from gcs.record.compact import compact_in_background
 from gcs.record.rotation import Rotation
 from gcs.record.writer import Recorder, RecorderError
 from gcs.session.effects import EVERYONE
-from gcs.session.session import Session
 from gcs.session.setup import Setup
-from gcs.session.signatures import Keys
 from gcs.shell import sockets
 from gcs.shell.client_ports import ClientPorts
 from gcs.shell.client_sockets import ClientSockets
@@ -47,6 +45,8 @@ from gcs.shell.recording import Recording
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 from gcs.shell.stations import Unsafe
+from gcs.station.session import Session
+from gcs.station.signatures import Keys
 
 DRAIN_WAIT_S = 5.0
 """How long the last events wait for an operator's program that does not read them at once."""

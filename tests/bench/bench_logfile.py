@@ -34,7 +34,7 @@ NAME = "LOCAL_POSITION_NED"
 
 OUR_COLUMNS = """
 import sys, time, gcs.record
-columns = gcs.record.columns
+columns = gcs.columns
 began = time.perf_counter()
 found = columns(sys.argv[1], sys.argv[2])
 print(len(found), time.perf_counter() - began)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from gcs.bridge.answers import NUMBER_OF
+from gcs.bridge.conversation.answers import NUMBER_OF
 from gcs.gate.refusal import Code
 from tests.clients.bridged_flight import bridged, end_peer, start_peer
 from tests.clients.mavutil_client import in_order

@@ -22,7 +22,7 @@ from typing import Any, Final
 from pymavlink.dialects.v20 import all as dialect
 from pymavlink.generator.mavcrc import x25crc
 
-from gcs.bridge.classes import Kind, command_row, message_row
+from gcs.bridge.catalog import Kind, command_row, message_row
 from gcs.bridge.routing import TARGETS
 from gcs.gate.policy.parse import parse_policy
 from gcs.session import effects, inputs

@@ -19,9 +19,9 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import Control, State
 from gcs.session import effects, inputs
-from gcs.session.session import Session
 from gcs.session.setup import Setup
-from gcs.session.vehicle import Vehicle
+from gcs.station.session import Session
+from gcs.vehicle.vehicle import Vehicle
 from gcs.wire.frame import Frame, split
 from tests.loopback.bridged import BRIDGE, BridgedFlight, Client, Heard
 from tests.loopback.copies import fly_or_copy, never_copied

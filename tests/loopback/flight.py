@@ -23,9 +23,9 @@ from gcs.gate.states import State
 from gcs.record.writer import Recorder
 from gcs.resources import policy_path
 from gcs.session import effects, inputs
-from gcs.session.session import Session
 from gcs.session.setup import Setup
-from gcs.session.signatures import Keys
+from gcs.station.session import Session
+from gcs.station.signatures import Keys
 from gcs.wire.frame import Frame, split
 from gcs.wire.signing import SecretKey
 from tests.loopback import pymavlink_decoder

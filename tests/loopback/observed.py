@@ -9,7 +9,7 @@ from gcs import ipc
 from gcs.gate.condition import Condition
 from gcs.gate.states import State
 from gcs.report import GarbageItem, RecordItem
-from gcs.session.session import Session
+from gcs.station.session import Session
 from tests.loopback import pymavlink_decoder
 from tests.loopback.pymavlink_decoder import SeenSetpoint
 

@@ -6,9 +6,9 @@ from gcs import ipc
 from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
 from gcs.session import effects, inputs
-from gcs.session.session import Session
 from gcs.session.setup import Setup
-from gcs.session.signatures import NO_KEYS
+from gcs.station.session import Session
+from gcs.station.signatures import NO_KEYS
 from tests.loopback.plan_clients import PlanFlight
 
 CONFIG = StationConfig(endpoints=["bridge"], name="second station")

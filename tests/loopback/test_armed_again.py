@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
-from gcs.bridge.dialogue import AGAIN_NS
+from gcs.bridge.conversation.dialogue import AGAIN_NS
 from tests.loopback.bridged import VEHICLE, BridgedFlight
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.stranger import stranger

@@ -13,7 +13,7 @@ from pymavlink.generator.mavcrc import x25crc
 from gcs.gate.states import State
 from gcs.session import inputs
 from gcs.session.effects import Finish
-from gcs.session.session import MAX_FAULTS
+from gcs.station.session import MAX_FAULTS
 from gcs.wire.frame import Frame, split
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality

@@ -9,7 +9,7 @@ import pytest
 
 from gcs.audit.audit import audit
 from gcs.audit.messages import Tape
-from gcs.bridge.classes import Kind, Row
+from gcs.bridge.catalog import Kind, Row
 from gcs.record.writer import Recorder
 from tests.loopback import bridge_clients
 from tests.loopback.flight import Flight

@@ -16,7 +16,7 @@ from pymavlink.dialects.v20 import all as v20
 from gcs.bridge.routing import target_of
 from gcs.report import Direction, FrameItem, FramesItem
 from gcs.session import inputs
-from gcs.session.client_frames import UPGRADES_NS
+from gcs.station.client_frames import UPGRADES_NS
 from gcs.wire.frame import Frame, split
 from tests.loopback.bridged import STATION, BridgedFlight, Client
 from tests.loopback.flight import PERSONALITIES, Personality

@@ -11,7 +11,7 @@ from gcs.protocol.lock_parameters import FenceSize, Locking
 from gcs.protocol.lock_setup import Change, Ending, LockSetup
 from gcs.protocol.signing_setup import Ending as KeyEnding
 from gcs.protocol.signing_setup import SigningSetup
-from gcs.session.failsafes import FENCE, FENCE_ACTION, findings, limits_of
+from gcs.vehicle.parameters.failsafes import FENCE, FENCE_ACTION, findings, limits_of
 from gcs.wire.frame import Frame, split
 from gcs.wire.signing import SecretKey
 from tests.loopback.bridged import STATION, BridgedFlight

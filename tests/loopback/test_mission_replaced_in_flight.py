@@ -16,7 +16,7 @@ from msgspec import structs
 
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
-from gcs.session.missions import Missions
+from gcs.vehicle.missions.missions import Missions
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import PlanFlight, mission
 from tests.loopback.random_missions import on_board

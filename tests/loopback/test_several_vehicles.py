@@ -9,8 +9,8 @@ import pytest
 from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
-from gcs.session.session import Session
 from gcs.session.setup import Setup
+from gcs.station.session import Session
 from tests.loopback import pymavlink_decoder
 from tests.loopback.flight import HOMES, PEER, Flight
 from tests.loopback.observed import START_NS

@@ -10,7 +10,7 @@ from gcs import ipc
 from gcs.gate.states import State
 from gcs.report import LogEvent
 from gcs.session import inputs
-from gcs.session.clients import FIRST
+from gcs.session.requests import FIRST
 from gcs.wire.frame import Frame, split
 from tests.loopback.flight import PERSONALITIES, Flight, Personality, lab_policy
 from tests.loopback.lossy_link import Weather

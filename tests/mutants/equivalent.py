@@ -118,18 +118,18 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
         ),
     ),
     "a stop is predicted with control, and there is none in GROUNDED": (
-        "gcs/gate/machine/facts.py module: with State.GROUNDED -> without",
+        "gcs/gate/machine/observe.py module: with State.GROUNDED -> without",
     ),
     "in LANDING a predicted breach changes nothing": (
-        "gcs/gate/machine/facts.py module: with State.LANDING -> without",
+        "gcs/gate/machine/observe.py module: with State.LANDING -> without",
     ),
     "the outcome has the branch's code; of this reason only the sentence is read": (
         (
-            "gcs/gate/machine/facts.py _photo: Refusal(Code.VEHICLE_REFUSED, 'the camera took no "
+            "gcs/gate/machine/observe.py _photo: Refusal(Code.VEHICLE_REFUSED, 'the camera took no "
             "picture') -> Refusal(Code.NO_ANSWER, 'the camera took no picture')"
         ),
-        "gcs/gate/machine/facts.py _position: Code.FENCE_BREACH -> Code.ESTIMATOR_RESET",
-        "gcs/gate/machine/facts.py _command_answer: Code.VEHICLE_REFUSED -> Code.NO_ANSWER",
+        "gcs/gate/machine/observe.py _position: Code.FENCE_BREACH -> Code.ESTIMATOR_RESET",
+        "gcs/gate/machine/observe.py _command_answer: Code.VEHICLE_REFUSED -> Code.NO_ANSWER",
         (
             "gcs/gate/machine/progress.py climb_ended_elsewhere: Code.VEHICLE_REFUSED -> "
             "Code.NO_ANSWER"
@@ -137,7 +137,7 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
     ),
     "position, velocity and their time are stored together and forgotten together": (
         (
-            "gcs/gate/machine/facts.py _faster_than_allowed: memory.pos_ned is None or "
+            "gcs/gate/machine/observe.py _faster_than_allowed: memory.pos_ned is None or "
             "memory.pos_ns is None -> memory.pos_ned is None and memory.pos_ns is None"
         ),
         (
@@ -146,7 +146,7 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
         ),
     ),
     "both events change nothing in any state": (
-        ("gcs/gate/machine/facts.py _command_answer: Event.HOLD_UNANSWERED -> Event.LATE_ANSWER"),
+        ("gcs/gate/machine/observe.py _command_answer: Event.HOLD_UNANSWERED -> Event.LATE_ANSWER"),
     ),
     "the event that follows, SEVERITY_EASED, changes nothing in any state": (
         "gcs/gate/machine/gate.py Gate._demand: after < before -> after <= before",

@@ -103,7 +103,7 @@ TARGETS: Final = {
                 "tests/loopback/test_operator_control.py",
             ),
             nearest=(
-                ("gcs/bridge/guard/names.py", ("tests/unit/test_policy_file.py",)),
+                ("gcs/bridge/setup_policy/names.py", ("tests/unit/test_policy_file.py",)),
                 ("gcs/bridge/guard", ("tests/unit/bridge/guard",)),
                 (
                     "gcs/bridge/meaning",
@@ -119,8 +119,8 @@ TARGETS: Final = {
                 ("gcs/bridge/classes", ("tests/unit/bridge/test_classes.py",)),
             ),
             skip=(
-                ("gcs/bridge/classes/explain.py", "sentences only"),
-                ("gcs/bridge/guard/explain.py", "sentences only"),
+                ("gcs/bridge/catalog/explain.py", "sentences only"),
+                ("gcs/bridge/setup_policy/explain.py", "sentences only"),
             ),
         ),
         Target(

@@ -10,7 +10,7 @@ import pytest
 
 from gcs.exit_codes import ExitCode
 from gcs.report import Direction
-from gcs.session.discovery import WANTED_HZ
+from gcs.vehicle.talk.discovery import WANTED_HZ
 from gcs.wire.ids import MsgId
 from tests.system.flight_log import decoded
 from tests.system.flight_log import times_ns as recorded_ns

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.autopilot.interface import ImageCaptured, Vehicle
@@ -16,9 +16,6 @@ from vehicle_sim.services.status_telemetry import STATUS
 from vehicle_sim.services.telemetry import STATE
 from vehicle_sim.services.units import boot_ms, degrees_e7, millimetres, usec
 from vehicle_sim.wire import messages as m
-
-if TYPE_CHECKING:
-    from vehicle_sim.services.operator_control import OperatorControl
 
 BUILDERS: Final = {**STATE, **STATUS, **MOTION}
 MISSION_ACTIVE: Final = 1  # MISSION_MODE
@@ -54,10 +51,11 @@ class Info:
         plan_ids: Callable[[], tuple[int, int, int, int]],
         metadata: Metadata | None = None,
         event_sequence: Callable[[], m.CurrentEventSequence] | None = None,
-        operator_control: OperatorControl | None = None,
+        control_status: Callable[[], m.ControlStatus] | None = None,
     ) -> None:
         """`plan_ids`: number of mission items, then the ids of mission, fence and rally points;
-        `event_sequence`: of a vehicle that has the events interface."""
+        `event_sequence`: of a vehicle that has the events interface; `control_status`: of one that
+        one station at a time commands."""
         self._vehicle = vehicle
         self._profile = profile
         self._modes = tuple(MODES[profile.name].values())
@@ -87,8 +85,8 @@ class Info:
         }
         if event_sequence is not None:
             self._own[m.IDS[m.CurrentEventSequence]] = event_sequence
-        if operator_control is not None:
-            self._own[m.IDS[m.ControlStatus]] = operator_control.status
+        if control_status is not None:
+            self._own[m.IDS[m.ControlStatus]] = control_status
         missing = frozenset[int]() if profile.camera else CAMERA_MESSAGES[profile.name]
         missing |= {m.IDS[kind] for kind in profile.untold}
         self.streamable: Final = (frozenset(BUILDERS) | frozenset(self._own)) - missing

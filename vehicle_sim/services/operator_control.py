@@ -132,9 +132,9 @@ def _within(value: float, low: float, high: float) -> float:
 
 
 def _request(context: CommandContext, order: Order) -> Answer:
-    if context.operator_control is None:
+    if context.ask_for_control is None:
         raise RefusedError(Result.UNSUPPORTED, "operator control is off")
-    return context.operator_control.asked(order)
+    return context.ask_for_control(order)
 
 
 OPERATOR: Final = {Cmd.REQUEST_OPERATOR_CONTROL: CommandEntry(_request)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from vehicle_sim.autopilot.interface import Result, Vehicle
 from vehicle_sim.autopilot.modes import Personality
@@ -12,9 +12,6 @@ from vehicle_sim.services.info import Info
 from vehicle_sim.services.orders import Answer, Order
 from vehicle_sim.services.profile import Profile
 from vehicle_sim.services.streams import Streams
-
-if TYPE_CHECKING:
-    from vehicle_sim.services.operator_control import OperatorControl
 
 
 class RefusedError(Exception):
@@ -33,7 +30,7 @@ class CommandContext:
     profile: Profile
     info: Info
     streams: dict[int, Streams]  # by channel
-    operator_control: OperatorControl | None = None  # None = anybody commands
+    ask_for_control: Callable[[Order], Answer] | None = None  # None = anybody commands
 
 
 Handler: TypeAlias = Callable[[CommandContext, Order], Answer]

@@ -101,6 +101,7 @@ class VehicleServer:
         # Where nobody is told how far they have come, there are no events.
         told = m.IDS[m.CurrentEventSequence] in self._stream_sets.by_mode[LinkMode.NORMAL]
         self._events = EventServer(vehicle, parameters, profile.events and told)
+        control = self._operator_control
         self._info = Info(
             vehicle,
             profile,
@@ -109,7 +110,7 @@ class VehicleServer:
             self._missions.plan_ids,
             metadata,
             self._events.current_sequence if self._events.on else None,
-            self._operator_control,
+            control.status if control is not None else None,
         )
         packed = {param_pack.PATH: param_pack.param_pack(parameters)}
         self._ftp = FtpServer(self.store, metadata.files if metadata is not None else packed)
@@ -124,7 +125,13 @@ class VehicleServer:
         self._logs = LogServer(vehicle, profile, self._recorder)
         self._streams: dict[int, Streams] = {}
         self._commands = Commands(
-            CommandContext(vehicle, profile, self._info, self._streams, self._operator_control)
+            CommandContext(
+                vehicle,
+                profile,
+                self._info,
+                self._streams,
+                control.asked if control is not None else None,
+            )
         )
         self._clock_ns = vehicle.clock_ns
         self._due_ns = NEVER

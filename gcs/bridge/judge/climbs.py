@@ -6,7 +6,7 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.effects import AsksVehicle
-from gcs.bridge.guard.parameters import TAKEOFF_HEIGHT
+from gcs.bridge.setup_policy.parameters import TAKEOFF_HEIGHT
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import Autopilot, mode_named

@@ -9,20 +9,20 @@ from __future__ import annotations
 
 from typing import Final
 
-from gcs.bridge.asked_rates import AskedRates
-from gcs.bridge.classes import Kind, Row, command_row, message_row
-from gcs.bridge.control import ControlServer
+from gcs.bridge.catalog import Kind, Row, command_row, message_row
 from gcs.bridge.effects import AsksForStreams, AsksVehicle, BridgeEffect, ToVehicle
-from gcs.bridge.guard.names import DENIED_BY_NAME, kinds_by_name
 from gcs.bridge.judge.motion import MotionJudge
 from gcs.bridge.judge.plans import PlanJudge
 from gcs.bridge.judge.received import Judged, Received, refuse
 from gcs.bridge.judge.set_up import SetUpJudge
 from gcs.bridge.judge.target_component import why_not_component
 from gcs.bridge.mission_mode import MissionMode
-from gcs.bridge.needed_rates import Rates, asked_anew, not_slower
+from gcs.bridge.peers.control import ControlServer
 from gcs.bridge.plans.server import PLAN_MESSAGES
-from gcs.bridge.thinned_streams import ThinnedStreams
+from gcs.bridge.rates.asked_rates import AskedRates
+from gcs.bridge.rates.needed_rates import Rates, asked_anew, not_slower
+from gcs.bridge.rates.thinned_streams import ThinnedStreams
+from gcs.bridge.setup_policy.names import DENIED_BY_NAME, kinds_by_name
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import ARDUPILOT

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from gcs.bridge.classes import Row
+from gcs.bridge.catalog import Row
 from gcs.bridge.effects import BridgeEffect, ToVehicle
 from gcs.bridge.judge.climbs import HEIGHT_WRITTEN, asks_for_height, climbs
 from gcs.bridge.judge.received import Judged, Received, refuse
 from gcs.bridge.judge.set_up import SetUpJudge
 from gcs.bridge.judge.target_component import is_for_another, only_autopilot
-from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Settled, Sticks, Words
-from gcs.bridge.meaning.samples import stream_of
-from gcs.bridge.meaning.translate import meaning_of
 from gcs.bridge.mission_mode import MissionMode
+from gcs.bridge.translate.meaning import Forward, Reject, Sample, Seen, Settled, Sticks, Words
+from gcs.bridge.translate.samples import stream_of
+from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.wire.ids import Cmd, ModeFlag

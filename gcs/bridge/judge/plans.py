@@ -6,17 +6,17 @@ from collections.abc import Sequence
 from typing import Final
 
 from gcs import ipc
-from gcs.bridge.classes import Row
-from gcs.bridge.client import Exchange
+from gcs.bridge.catalog import Row
 from gcs.bridge.client_plan import ClientPlan
 from gcs.bridge.effects import Answers, AsksPlan, BridgeEffect, Refuses, StopsPlan, ToVehicle
 from gcs.bridge.judge.received import Judged, Received
 from gcs.bridge.judge.set_up import SetUpJudge
-from gcs.bridge.meaning.meaning import Seen
+from gcs.bridge.peers.client import Exchange
 from gcs.bridge.plans import effects as plan_effects
 from gcs.bridge.plans.collecting import acknowledgement
 from gcs.bridge.plans.downloads import ASKS_ON_NS, Downloads, Reader
 from gcs.bridge.plans.effects import PlanEffect
+from gcs.bridge.translate.meaning import Seen
 from gcs.gate.effects import Level
 from gcs.wire.frame import Frame
 from gcs.wire.ids import MissionResult, MissionType

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gcs.bridge.classes import Row
-from gcs.bridge.client import Exchange
+from gcs.bridge.catalog import Row
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import BridgeEffect
-from gcs.bridge.meaning.meaning import Seen
-from gcs.bridge.pending_requests import From
+from gcs.bridge.peers.client import Exchange
+from gcs.bridge.translate.meaning import Seen
 from gcs.gate.refusal import Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.frame import Frame

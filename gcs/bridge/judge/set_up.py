@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from gcs.bridge.classes import Row
+from gcs.bridge.catalog import Row
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import (
     Answers,
     AsksVehicle,
@@ -11,12 +12,11 @@ from gcs.bridge.effects import (
     Notes,
     ToVehicle,
 )
-from gcs.bridge.guard.guard import Guard
-from gcs.bridge.guard.parameters import TAKEOFF_HEIGHT
-from gcs.bridge.guard.verdict import Allowed, GuardSeen, Judgement, Refused
 from gcs.bridge.judge.received import Judged, Received, refuse
-from gcs.bridge.meaning.meaning import Seen
-from gcs.bridge.pending_requests import From
+from gcs.bridge.setup_policy.guard import Guard
+from gcs.bridge.setup_policy.parameters import TAKEOFF_HEIGHT
+from gcs.bridge.setup_policy.verdict import Allowed, GuardSeen, Judgement, Refused
+from gcs.bridge.translate.meaning import Seen
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import BridgeRules
 from gcs.gate.refusal import Code, Refusal

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-from gcs.bridge.pending_requests import From
+from gcs.bridge.conversation.pending_requests import From
 from gcs.plan.item_messages import item_of, item_of_degrees
 from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from gcs.bridge.pending_requests import From
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.plans.collecting import ItemMessage, question
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.bridge.plans.replies import reply

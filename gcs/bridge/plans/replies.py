@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from gcs.bridge.answers import texts
+from gcs.bridge.conversation.answers import texts
+from gcs.bridge.conversation.pending_requests import From
+from gcs.bridge.conversation.recent_texts import RecentTexts
 from gcs.bridge.effects import Answers
-from gcs.bridge.pending_requests import From
 from gcs.bridge.plans.collecting import acknowledgement
 from gcs.bridge.plans.effects import PlanEffect, Refused
-from gcs.bridge.recent_texts import RecentTexts
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address

@@ -17,7 +17,7 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
-from gcs.bridge.pending_requests import From
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.plans.collecting import Collecting, ItemMessage
 from gcs.bridge.plans.effects import Pass, PlanEffect, SetCurrent
 from gcs.bridge.plans.following import Following
@@ -47,8 +47,8 @@ MOST_ITEMS: Final[Mapping[MissionType, int]] = {
     MissionType.FENCE: 500,
     MissionType.RALLY: 100,
 }
-"""A mission of more items keeps the 20 Hz tick waiting (`session/plans.py`); the vehicle may have
-room for fewer, and says so itself."""
+"""A mission of more items keeps the 20 Hz tick waiting (`vehicle/missions/plans.py`); the vehicle
+may have room for fewer, and says so itself."""
 PLAN_MESSAGES: Final[tuple[type[Message], ...]] = (
     MissionCount,
     MissionItem,

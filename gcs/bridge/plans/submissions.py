@@ -17,7 +17,7 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
-from gcs.bridge.pending_requests import From
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.plans.collecting import ItemMessage, acknowledgement
 from gcs.bridge.plans.effects import Clear, PlanEffect, Upload, Withdraw
 from gcs.bridge.plans.following import Following

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Fact, Pose
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
-from gcs.flight_report.words import clock
+from gcs.flight_report.number_format import clock
 
 FAILURE = Limit(60.0, "deg", "FD_FAIL_R and FD_FAIL_P of a PX4 1.14: its failure detector acts")
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Estimator, Fact
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
-from gcs.flight_report.words import clock
+from gcs.flight_report.number_format import clock
 
 REJECTED = {
     "px4": Limit(1.0, "", "MAVLink, ESTIMATOR_STATUS: above 1 a measurement is rejected"),

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Fact, Gps
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
-from gcs.flight_report.words import clock
+from gcs.flight_report.number_format import clock
 
 _WIKI = "ArduPilot wiki, Diagnosing problems using Logs"
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from gcs.flight_report.facts import Fact, Status
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.findings.spells import Spells, Worst
-from gcs.flight_report.words import clock
+from gcs.flight_report.number_format import clock
 
 GAP = Limit(2.0, "s", "two heartbeats missed; MAVLink's heartbeat comes once a second")
 LOST = Limit(3.5, "s", "heartbeat_age_s of the default policy: there is no vehicle any more")

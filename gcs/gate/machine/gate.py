@@ -29,9 +29,9 @@ from gcs.gate.inputs import ConditionChanged, Input, OperatorLost, Requested, St
 from gcs.gate.machine.actions import ACTIONS
 from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.facts import events_from
 from gcs.gate.machine.guards import GUARDS
 from gcs.gate.machine.memory import SECOND_NS, Memory
+from gcs.gate.machine.observe import events_from
 from gcs.gate.machine.pacing import towards, way_is_known
 from gcs.gate.machine.rules import BACK, STAY, Branch, Next, Reply
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table

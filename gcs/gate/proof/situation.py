@@ -5,7 +5,8 @@ what the present state does not look at is left out altogether.  Two memories th
 there are one situation, and the explorer goes on from the first of them that it met.
 
 What a later state looks at makes a difference too, and not all of it is here: that would be several
-times as many situations.  `FINER` tells most of it apart; `left_out.py` samples what is lost.
+times as many situations.  `FINER` tells most of it apart; `unexplored_memories.py` samples what is
+lost.
 """
 
 from __future__ import annotations

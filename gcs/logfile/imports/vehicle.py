@@ -12,7 +12,7 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from gcs.frames import Vec3
+from gcs.frames import Vec3, quat_from_euler
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import GENERIC, PX4, Autopilot, mode_of
@@ -25,7 +25,6 @@ from gcs.report import (
     RecordItem,
     StatusItem,
 )
-from gcs.session.telemetry import quat_from_euler
 from gcs.wire.ids import ModeFlag
 
 STATUS_PERIOD_NS = 1_000_000_000
@@ -36,7 +35,7 @@ _INTEGER_CODES = {1: "B", 2: "b", 3: "H", 4: "h", 5: "I", 6: "i"}
 """MAV_PARAM_TYPE -> `struct` code, of those that PX4 puts byte by byte into the float."""
 _SIZES = {"B": 1, "b": 1, "H": 2, "h": 2, "I": 4, "i": 4}
 LEVEL_OF_SEVERITY = (5, 4, 4, 4, 3, 2, 2, 1)
-"""MAV_SEVERITY -> LogEvent.level, as `gcs/session/words.py` has it for a flight."""
+"""MAV_SEVERITY -> LogEvent.level, as `gcs/vehicle/talk/vehicle_texts.py` has it for a flight."""
 
 
 @dataclass(slots=True)

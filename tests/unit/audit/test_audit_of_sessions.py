@@ -37,11 +37,11 @@ from gcs.session.inputs import (
     OperatorLine,
     SimLine,
 )
-from gcs.session.session import Session
 from gcs.session.setup import Setup
-from gcs.session.vehicles import Vehicles
 from gcs.session.work import Work
 from gcs.shell.environment import environment
+from gcs.station.session import Session
+from gcs.station.vehicles import Vehicles
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import Frame, plain_frames
 from gcs.wire.messages import Heartbeat

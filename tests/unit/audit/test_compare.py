@@ -9,9 +9,9 @@ import pytest
 
 from gcs.audit.audit import scope_of
 from gcs.audit.compare import Pair, Scope, differing
+from gcs.audit.describe import kind_of_message, told_pair
 from gcs.audit.messages import Stored
 from gcs.audit.seals import Altered, Missing, SealCheck
-from gcs.audit.words import kind_of_message, told_pair
 from gcs.record import ros1
 from gcs.record.derived import Derived
 from gcs.record.seals import PartBegan, Seal

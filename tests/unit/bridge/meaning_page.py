@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from gcs.bridge.answers import NUMBER_OF, result_of
-from gcs.bridge.meaning.commands import COMMANDS
-from gcs.bridge.meaning.meaning import Meaning, Words
-from gcs.bridge.meaning.modes import for_mode
-from gcs.bridge.meaning.translate import MESSAGES
+from gcs.bridge.conversation.answers import NUMBER_OF, result_of
+from gcs.bridge.translate.commands import COMMANDS
+from gcs.bridge.translate.meaning import Meaning, Words
+from gcs.bridge.translate.modes import for_mode
+from gcs.bridge.translate.translate import MESSAGES
 from gcs.gate.states import FlightMode, State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot, Mode
 from gcs.wire.ids import Cmd

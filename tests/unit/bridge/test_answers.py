@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.bridge.answers import acknowledgement, item_acknowledgement, result_of, texts
+from gcs.bridge.conversation.answers import acknowledgement, item_acknowledgement, result_of, texts
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code
 from gcs.protocol.effects import Address

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from gcs.bridge.asked_rates import OF_ALL, AskedRates
+from gcs.bridge.rates.asked_rates import OF_ALL, AskedRates
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address

@@ -14,8 +14,8 @@ import pytest
 from msgspec import structs
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.meaning.meaning import Meaning, Sample, Seen
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.translate.meaning import Meaning, Sample, Seen
+from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.policy.parse import DEFAULT
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from tests.unit.bridge.vehicles import NAN, flying, refusal, sent

@@ -24,7 +24,7 @@ from gcs.bridge.effects import (
     ToVehicle,
 )
 from gcs.bridge.judge.received import Judged
-from gcs.bridge.meaning.meaning import Seen
+from gcs.bridge.translate.meaning import Seen
 from gcs.gate.effects import Level
 from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.policy.policy import BridgeRules

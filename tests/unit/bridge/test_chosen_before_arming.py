@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from gcs import ipc
-from gcs.bridge.meaning.chosen_before_arming import (
+from gcs.bridge.translate.chosen_before_arming import (
     KEPT_NS,
     ChosenMission,
     ChosenTakeoff,
@@ -16,8 +16,8 @@ from gcs.bridge.meaning.chosen_before_arming import (
     takeoff_may_be_chosen,
     with_chosen,
 )
-from gcs.bridge.meaning.meaning import Sample, Words
-from gcs.bridge.meaning.says import ask, unsupported
+from gcs.bridge.translate.meaning import Sample, Words
+from gcs.bridge.translate.says import ask, unsupported
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4
 from tests.unit.bridge.vehicles import standing

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from gcs.bridge.classes import Kind, Row, command_row, explain, explanation, message_row
-from gcs.bridge.classes.row import Group, table_of
-from gcs.bridge.classes.tables import command_rows, message_rows
+from gcs.bridge.catalog import Kind, Row, command_row, explain, explanation, message_row
+from gcs.bridge.catalog.row import Group, table_of
+from gcs.bridge.catalog.tables import command_rows, message_rows
 from gcs.wire import dialect
 from tests.unit.bridge import client_traffic
 
@@ -332,7 +332,7 @@ class TestExplain:
 def test_the_table_loads_neither_pymavlink_nor_the_dialect() -> None:
     """A station starts often, and `--explain` answers at once."""
     code = (
-        "import sys, gcs.bridge.classes\n"
+        "import sys, gcs.bridge.catalog\n"
         "heavy = {'pymavlink', 'gcs.wire', 'difflib', 'msgspec'} & sys.modules.keys()\n"
         "print(*sorted(heavy))"
     )

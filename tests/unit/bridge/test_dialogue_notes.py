@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from gcs import ipc
-from gcs.bridge.dialogue import Dialogue
+from gcs.bridge.conversation.dialogue import Dialogue
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import Answers, BridgeEffect, Says
-from gcs.bridge.pending_requests import From
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck, CommandLong, Statustext

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from gcs.bridge.dialogue import Dialogue
+from gcs.bridge.conversation.dialogue import Dialogue
+from gcs.bridge.conversation.pending_requests import From
+from gcs.bridge.conversation.recent_texts import MOST_TEXTS
 from gcs.bridge.effects import Refuses
-from gcs.bridge.pending_requests import From
-from gcs.bridge.recent_texts import MOST_TEXTS
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from gcs.bridge.effects import Answers
-from gcs.bridge.link_loops import BEATS_NS, FORGOTTEN_NS, MOST_BEATS, QUESTIONS_KEPT, Loop, Loops
+from gcs.bridge.peers.link_loops import (
+    BEATS_NS,
+    FORGOTTEN_NS,
+    MOST_BEATS,
+    QUESTIONS_KEPT,
+    Loop,
+    Loops,
+)
 from gcs.protocol.effects import Address
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import Frame, split

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcs.bridge.routing import MOST_COMPONENTS, Routes
 from gcs.protocol.effects import Address
 from gcs.session.effects import Transmit
-from gcs.session.links import MOST_NAMES, Links
+from gcs.station.links import MOST_NAMES, Links
 from gcs.wire.frame import Frame, split
 from gcs.wire.messages import ParamRequestRead
 

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.meaning.meaning import Forward, Words
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.translate.meaning import Forward, Words
+from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, GENERIC, PX4, Autopilot

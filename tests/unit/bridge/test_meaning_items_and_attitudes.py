@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4
 from gcs.wire.messages import Message

@@ -8,8 +8,8 @@ import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.meaning.meaning import Forward, Reject, Words
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.translate.meaning import Forward, Reject, Words
+from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from gcs import ipc
-from gcs.bridge.meaning.meaning import Words
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.translate.meaning import Words
+from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.wire.ids import Cmd

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from gcs.bridge.meaning.meaning import Forward, Sample, Seen, Sticks, Words
-from gcs.bridge.meaning.pace import Pace
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.translate.meaning import Forward, Sample, Seen, Sticks, Words
+from gcs.bridge.translate.pace import Pace
+from gcs.bridge.translate.translate import meaning_of
 from gcs.frames import Vec3
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4

@@ -9,11 +9,11 @@ from dataclasses import replace
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs.bridge.meaning.commands import COMMANDS
-from gcs.bridge.meaning.meaning import Forward, Reject, Sample, Seen, Sticks, Words
-from gcs.bridge.meaning.pace import Pace
-from gcs.bridge.meaning.stick_stream import StickStream
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.translate.commands import COMMANDS
+from gcs.bridge.translate.meaning import Forward, Reject, Sample, Seen, Sticks, Words
+from gcs.bridge.translate.pace import Pace
+from gcs.bridge.translate.stick_stream import StickStream
+from gcs.bridge.translate.translate import meaning_of
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.stream_samples import StreamSample, beyond_rules

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.bridge.classes.row import Kind
-from gcs.bridge.classes.tables import command_rows, message_rows
-from gcs.bridge.meaning.commands import COMMANDS
-from gcs.bridge.meaning.meaning import Forward, Reject, Words
-from gcs.bridge.meaning.modes import for_mode
-from gcs.bridge.meaning.translate import MESSAGES
+from gcs.bridge.catalog.row import Kind
+from gcs.bridge.catalog.tables import command_rows, message_rows
+from gcs.bridge.translate.commands import COMMANDS
+from gcs.bridge.translate.meaning import Forward, Reject, Words
+from gcs.bridge.translate.modes import for_mode
+from gcs.bridge.translate.translate import MESSAGES
 from gcs.gate.refusal import Code
 from gcs.gate.requests import SetMode
 from gcs.gate.states import FlightMode, State

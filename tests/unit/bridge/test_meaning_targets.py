@@ -11,8 +11,8 @@ import math
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.meaning.meaning import Sample, Words
-from gcs.bridge.meaning.translate import meaning_of
+from gcs.bridge.translate.meaning import Sample, Words
+from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.wire.messages import Message

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from gcs import ipc
-from gcs.bridge.client import Client, Exchange
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import Says
-from gcs.bridge.meaning.chosen_before_arming import KEPT_NS
-from gcs.bridge.meaning.says import ask
 from gcs.bridge.mission_mode import LATE_NS, NOT_SHOWN, RECENT_NS, SHOWN_NS, MissionMode
-from gcs.bridge.pending_requests import From
+from gcs.bridge.peers.client import Client, Exchange
+from gcs.bridge.translate.chosen_before_arming import KEPT_NS
+from gcs.bridge.translate.says import ask
 from gcs.protocol.autopilot import PX4
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import SPEC_TIMING

@@ -7,7 +7,7 @@ import math
 import msgspec
 import pytest
 
-from gcs.bridge.needed_rates import asked_anew, not_slower
+from gcs.bridge.rates.needed_rates import asked_anew, not_slower
 from gcs.wire.ids import Cmd, MsgId
 from gcs.wire.messages import CommandLong, RequestDataStream
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import pytest
 
 from gcs import ipc
+from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import Answers
-from gcs.bridge.pending_requests import From
 from gcs.bridge.plans.effects import (
     Clear,
     Pass,

@@ -7,7 +7,7 @@ import math
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.thinned_streams import ThinnedStreams
+from gcs.bridge.rates.thinned_streams import ThinnedStreams
 from gcs.protocol.effects import Address
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Cmd, MsgId

@@ -8,7 +8,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.meaning.meaning import Reject, Seen, Words
+from gcs.bridge.translate.meaning import Reject, Seen, Words
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State

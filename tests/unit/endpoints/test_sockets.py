@@ -11,7 +11,7 @@ from contextlib import ExitStack, closing
 
 import pytest
 
-from gcs.bridge.link_loops import LEFT_OUT_NS
+from gcs.bridge.peers.link_loops import LEFT_OUT_NS
 from gcs.shell.endpoints import Endpoint, Kind, parse_endpoint
 from gcs.shell.sockets import AddressInUse, Link, SerialUnavailable, TcpIn, TcpOut, UdpIn, open_link
 from gcs.shell.sockets.base import News, grow_buffer

@@ -26,9 +26,9 @@ from gcs.gate.proof.alphabet import ALPHABET
 from gcs.gate.proof.edge import Objection
 from gcs.gate.proof.explorer import Explorer
 from gcs.gate.proof.invariants import objections
-from gcs.gate.proof.left_out import LeftOut
 from gcs.gate.proof.situation import FINER
 from gcs.gate.proof.taking import take
+from gcs.gate.proof.unexplored_memories import LeftOut
 from gcs.gate.proof.walk import Begun, Explored, Walk
 from gcs.gate.proof.world import CONDITIONS, World
 from gcs.gate.refusal import Code

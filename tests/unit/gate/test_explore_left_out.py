@@ -13,8 +13,8 @@ import pytest
 
 from gcs.gate.machine.table import TABLE, Table
 from gcs.gate.proof.explorer import Explorer
-from gcs.gate.proof.left_out import LeftOut
 from gcs.gate.proof.situation import USUAL, parts
+from gcs.gate.proof.unexplored_memories import LeftOut
 from gcs.gate.proof.walk import Begun, Explored, Judge, Walk
 from tests.unit.gate.explored import WORLDS
 from tests.unit.gate.planted import FAULTS

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-import gcs.record
+import gcs
 from gcs.logfile.errors import BadLogError
 from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem
@@ -57,7 +57,7 @@ def test_every_message_of_a_real_flight_is_as_pymavlink_decodes_it(parts: tuple[
             kinds.setdefault(message.get_type(), []).append(message)
     assert len(kinds) > 30
     for kind, messages in kinds.items():
-        found = gcs.record.columns(path, kind)
+        found = gcs.columns(path, kind)
         assert found.dtype.names is not None
         names = list(found.dtype.names[HEAD:])
         assert len(found) == len(messages), kind
@@ -92,17 +92,17 @@ def test_a_record_and_a_tlog_of_the_same_frames_give_the_same(
     pairs = zip(flight(300), flight(300, mavlink1=True, sysid=2, seed=2), strict=True)
     frames = [frame for pair in pairs for frame in pair]
     tlog = write(tmp_path / "a.tlog", frames, step_us=10_000)
-    mine, theirs = gcs.record.columns(record, name), gcs.record.columns(tlog, name)
+    mine, theirs = gcs.columns(record, name), gcs.columns(tlog, name)
     assert len(mine) == 100
     assert mine.tobytes() == theirs.tobytes()
 
 
 def test_one_vehicle_can_be_asked_for(record: Path) -> None:
-    one = gcs.record.columns(record, "ATTITUDE", sysid=1)
-    two = gcs.record.columns(record, "ATTITUDE", sysid=2, compid=1)
+    one = gcs.columns(record, "ATTITUDE", sysid=1)
+    two = gcs.columns(record, "ATTITUDE", sysid=2, compid=1)
     assert (len(one), len(two)) == (50, 50)
     assert set(one["sysid"].tolist()) == {1}
-    assert len(gcs.record.columns(record, "ATTITUDE", compid=9)) == 0
+    assert len(gcs.columns(record, "ATTITUDE", compid=9)) == 0
 
 
 def test_a_record_that_was_not_closed_is_read_as_far_as_it_goes(
@@ -111,32 +111,32 @@ def test_a_record_that_was_not_closed_is_read_as_far_as_it_goes(
     whole = record.read_bytes()
     killed = tmp_path / "killed.mcap"
     killed.write_bytes(whole[: len(whole) * 2 // 3])
-    found = gcs.record.columns(killed, "ATTITUDE")
-    every = gcs.record.columns(record, "ATTITUDE")
+    found = gcs.columns(killed, "ATTITUDE")
+    every = gcs.columns(record, "ATTITUDE")
     assert 0 < len(found) < len(every)
     assert found.tobytes() == every[: len(found)].tobytes()
 
 
 def test_the_fields_are_the_dialects(record: Path) -> None:
-    found = gcs.record.columns(record, "MISSION_CURRENT")
+    found = gcs.columns(record, "MISSION_CURRENT")
     assert found.dtype.names is not None
     expected = [field.name for field in MESSAGES_BY_NAME["MISSION_CURRENT"].fields]
     assert list(found.dtype.names) == ["time_ns", "frame_seq", "sysid", "compid", *expected]
 
 
 def test_nothing_of_a_kind_is_an_empty_array(record: Path) -> None:
-    assert len(gcs.record.columns(record, "GPS_RAW_INT")) == 0
+    assert len(gcs.columns(record, "GPS_RAW_INT")) == 0
 
 
 def test_a_message_that_does_not_exist_is_a_key_error(record: Path) -> None:
     with pytest.raises(KeyError, match="NO_SUCH"):
-        gcs.record.columns(record, "NO_SUCH")
+        gcs.columns(record, "NO_SUCH")
 
 
 def test_a_file_that_is_neither_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_bytes(b"hello")
     with pytest.raises(BadLogError, match="no MAVLink frame"):
-        gcs.record.columns(tmp_path / "a.txt", "ATTITUDE")
+        gcs.columns(tmp_path / "a.txt", "ATTITUDE")
 
 
 def test_a_summary_that_lies_is_not_believed(tmp_path: Path, record: Path) -> None:
@@ -154,4 +154,4 @@ def test_a_summary_that_lies_is_not_believed(tmp_path: Path, record: Path) -> No
     assert spoilt
     bad = tmp_path / "bad.mcap"
     bad.write_bytes(raw)
-    assert len(gcs.record.columns(bad, "ATTITUDE")) <= 100
+    assert len(gcs.columns(bad, "ATTITUDE")) <= 100

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from pymavlink.dialects.v20 import all as dialect
 
-import gcs.record
+import gcs
 from tests.unit.cli.command_line import Ended
 from tests.unit.cli.command_line import gcs as run_gcs
 from tests.unit.logfile.test_dataflash_and_ulog import bin_file, ulg_file
@@ -54,7 +54,7 @@ def square(tmp_path: Path) -> Path:
 
 def test_csv_of_one_message_reads_back_exactly(tmp_path: Path, tlog: Path) -> None:
     export(tlog, tmp_path / "a.csv", "--message", "ATTITUDE")
-    expected = gcs.record.columns(tlog, "ATTITUDE")
+    expected = gcs.columns(tlog, "ATTITUDE")
     with open(tmp_path / "a.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(expected) == 10
@@ -143,7 +143,7 @@ def test_gpx_has_the_positions_at_their_times_five_times_a_second(
     assert [track.findtext("g:name", "", GPX) for track in tracks] == ["vehicle 1", "vehicle 2"]
     points = tracks[1].findall(".//g:trkpt", GPX)
     assert len(points) == 20  # 4 s
-    positions = gcs.record.columns(square, "GLOBAL_POSITION_INT", sysid=2)
+    positions = gcs.columns(square, "GLOBAL_POSITION_INT", sysid=2)
     for point in points:
         when = datetime.fromisoformat(point.findtext("g:time", "", GPX))
         (one,) = positions[abs(positions["time_ns"] / 1e9 - when.timestamp()) < 0.001]
@@ -204,8 +204,8 @@ def test_parquet_reads_back_exactly(tmp_path: Path, tlog: Path) -> None:
     export(tlog, tmp_path / "a.parquet", "--message", "STATUSTEXT")
     export(tlog, tmp_path / "b.parquet", "--message", "ATTITUDE")
     texts = pyarrow.parquet.read_table(tmp_path / "a.parquet").to_pydict()
-    expected = gcs.record.columns(tlog, "STATUSTEXT")
+    expected = gcs.columns(tlog, "STATUSTEXT")
     assert texts["text"] == [text.decode() for text in expected["text"].tolist()]
     assert texts["time_ns"] == expected["time_ns"].tolist()
     angles = pyarrow.parquet.read_table(tmp_path / "b.parquet").to_pydict()
-    assert angles["roll"] == gcs.record.columns(tlog, "ATTITUDE")["roll"].tolist()
+    assert angles["roll"] == gcs.columns(tlog, "ATTITUDE")["roll"].tolist()

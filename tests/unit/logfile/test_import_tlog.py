@@ -17,7 +17,7 @@ from mcap.reader import make_reader
 from mcap_ros1.decoder import DecoderFactory
 from pymavlink.dialects.v20 import all as dialect
 
-import gcs.record
+import gcs
 from gcs.logfile.errors import BadLogError
 from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem, GarbageItem
@@ -309,7 +309,7 @@ def test_a_damaged_record_is_exported_as_far_as_it_goes_or_refused(data: st.Data
         assert ended.exit_code in (0, 4), ended.output
         assert "Traceback" not in ended.output
         with suppress(BadLogError):
-            assert len(gcs.record.columns(source, "ATTITUDE")) <= 1000
+            assert len(gcs.columns(source, "ATTITUDE")) <= 1000
 
 
 _RECORD: list[bytes] = []
@@ -328,6 +328,6 @@ def test_a_record_that_was_imported_has_the_columns_of_its_source(tmp_path: Path
     source = write(tmp_path / "a.tlog", flight(600))
     imported(source, tmp_path / "a.mcap")
     for name in ("ATTITUDE", "PARAM_VALUE", "STATUSTEXT"):
-        ours = gcs.record.columns(tmp_path / "a.mcap", name)
+        ours = gcs.columns(tmp_path / "a.mcap", name)
         assert len(ours) == 100
-        assert np.array_equal(ours, gcs.record.columns(source, name))
+        assert np.array_equal(ours, gcs.columns(source, name))

@@ -12,7 +12,7 @@ from gcs.operator.client import StationEnded
 from gcs.operator.dialogue import Dialogue, TrackedRequest, unexpected_end
 from gcs.operator.errors import ExitError
 from gcs.operator.station_loss import after_station_died
-from gcs.session.failsafes import findings, limits_of
+from gcs.vehicle.parameters.failsafes import findings, limits_of
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 
 

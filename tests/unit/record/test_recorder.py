@@ -19,8 +19,8 @@ from gcs.record import ros1, writer
 from gcs.record.backend import Channel, FoxgloveBackend, McapBackend
 from gcs.record.derived import Derived
 from gcs.record.guarded_file import GuardedFile, RawFile, open_exclusive
-from gcs.record.news import RecordLost, RecordResumed, RecordRotated
 from gcs.record.reading import Reading
+from gcs.record.recorder_status import RecordLost, RecordResumed, RecordRotated
 from gcs.record.rotation import Rotation
 from gcs.record.topics import INPUT_TOPIC, Out
 from gcs.record.writer import Recorder, RecorderError

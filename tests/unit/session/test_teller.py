@@ -18,7 +18,7 @@ from gcs.gate.states import Control, State
 from gcs.record.derived.gate_json import GateJson
 from gcs.record.derived.vehicle_json import VehicleJson
 from gcs.report import ConditionItem, FenceItem, FsaItem, LogEvent
-from gcs.session import teller
+from gcs.session import announcements
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.requests import Asked
 from gcs.session.work import Decide, Log
@@ -44,7 +44,7 @@ def test_a_refusal_is_told_with_its_numbers_in_the_operators_frame() -> None:
     refusal = Refusal(Code.OUTSIDE_FENCE, "350 m outside", (("distance_m", 350.0),), "home")
     goal_ned = (0.0, 500.0, -2.0)
     decide = Decide(7, Ruling.REFUSED, refusal, goal_ned=goal_ned)
-    assert told(teller.verdict(decide, ASKED, 1)) == (
+    assert told(announcements.verdict(decide, ASKED, 1)) == (
         [
             '{"type":"verdict","id":3,"word":"goto","outcome":"refused","code":"OUTSIDE_FENCE",'
             '"sentence":"350 m outside","zone":"home","numbers":{"distance_m":350.0},'
@@ -62,14 +62,14 @@ def test_a_goal_that_is_no_number_is_null() -> None:
     goal_ned = (math.nan, 1.0, -math.inf)
     refusal = Refusal(Code.NON_FINITE, "north is no number")
     decide = Decide(7, Ruling.REFUSED, refusal, goal_ned=goal_ned)
-    (line,), (message,) = told(teller.verdict(decide, ASKED, 1))
+    (line,), (message,) = told(announcements.verdict(decide, ASKED, 1))
     assert '"goal_enu":[1.0,null,null]' in line
     assert '"goal":{"east_m":1.0,"north_m":null,"up_m":null}' in message
 
 
 def test_an_acceptance_has_its_evidence_and_a_request_without_a_goal_none() -> None:
     decide = Decide(7, Ruling.ACCEPTED, evidence=(("stop_m", 1.5),))
-    (line,), (message,) = told(teller.verdict(decide, ASKED, 1))
+    (line,), (message,) = told(announcements.verdict(decide, ASKED, 1))
     assert '"numbers":{"stop_m":1.5},"goal_enu":null,"operation":7}' in line
     assert '"outcome":"accepted","numbers":{"stop_m":1.5}}' in message
     assert "goal" not in message
@@ -77,7 +77,7 @@ def test_an_acceptance_has_its_evidence_and_a_request_without_a_goal_none() -> N
 
 def test_an_ending_is_a_decision_of_the_record() -> None:
     ended = Outcome(7, OutcomeKind.ABORTED, Code.STALE, "no position")
-    assert told(teller.outcome(ended, ASKED, 1)) == (
+    assert told(announcements.outcome(ended, ASKED, 1)) == (
         [
             '{"type":"ending","id":3,"word":"goto","ended":"aborted","code":"STALE",'
             '"sentence":"no position"}'
@@ -93,7 +93,7 @@ def test_a_transition_and_its_goal() -> None:
     moved = Transition(
         State.HOVERING, State.MOVING, "goal verified", Control.OURS, Severity.CAUTION
     )
-    assert told(teller.transition(moved, (1.0, 2.0, -3.0), WRONG, 1)) == (
+    assert told(announcements.transition(moved, (1.0, 2.0, -3.0), WRONG, 1)) == (
         [
             '{"type":"state","before":"HOVERING","after":"MOVING","event":"goal verified",'
             '"control":"OURS","severity":"CAUTION"}'
@@ -108,7 +108,7 @@ def test_a_transition_and_its_goal() -> None:
 
 
 def test_a_reminder_is_for_the_record_only() -> None:
-    assert told(teller.reminder(Gate(DEFAULT, "px4", NOW_NS), 1)) == (
+    assert told(announcements.reminder(Gate(DEFAULT, "px4", NOW_NS), 1)) == (
         [],
         [
             '{"state":"NO_VEHICLE","state_id":4,"before":"NO_VEHICLE","event":"reminder",'
@@ -121,12 +121,12 @@ def test_what_is_wrong_is_told_in_words_the_worst_first() -> None:
     gate = Gate(DEFAULT, "px4", NOW_NS)
     gate.handle(ConditionChanged(Condition.BATTERY_LOW, True, "14 % are left"), NOW_NS)
     gate.handle(ConditionChanged(Condition.GPS_LOST, True, "no 3D fix"), NOW_NS)
-    assert teller.conditions(gate) == (
+    assert announcements.conditions(gate) == (
         ConditionItem("gps_lost", "HOLD", "no 3D fix"),
         ConditionItem("battery_low", "CAUTION", "14 % are left"),
     )
     gate.handle(ConditionChanged(Condition.GPS_LOST, False, "3D fix"), NOW_NS)
-    (effect,) = teller.reminder(gate, 1)
+    (effect,) = announcements.reminder(gate, 1)
     assert isinstance(effect, Record)
     assert isinstance(effect.item, FsaItem)
     assert [one.name for one in effect.item.conditions] == ["battery_low"]
@@ -136,7 +136,7 @@ def test_the_fence_is_one_list_of_zones_for_both() -> None:
     circle = Zone("home", True, Circle((1.0, 2.0), 150.0), 0.0, 50.0)
     corners = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0))
     open_above = Zone("tower", False, Polygon(corners))
-    record, emit = teller.fence([circle, open_above], Origin(47.4, 8.5, 488.0), DEFAULT)
+    record, emit = announcements.fence([circle, open_above], Origin(47.4, 8.5, 488.0), DEFAULT)
     assert isinstance(record, Record)
     assert isinstance(record.item, FenceItem)
     assert record.item.origin == (47.4, 8.5, 488.0)
@@ -153,7 +153,7 @@ def test_the_fence_is_one_list_of_zones_for_both() -> None:
 
 
 def test_a_log_line_is_the_same_object_for_both() -> None:
-    emit, record = teller.log(Log(Level.WARNING, "gate", "too far"), NOW_NS)
+    emit, record = announcements.log(Log(Level.WARNING, "gate", "too far"), NOW_NS)
     assert isinstance(emit, Emit)
     assert isinstance(record, Record)
     assert emit.event is record.item

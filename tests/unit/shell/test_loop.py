@@ -24,7 +24,6 @@ from gcs.session.effects import (
     Transmit,
     WriteFile,
 )
-from gcs.session.incoming import FramesRaisedError
 from gcs.session.inputs import (
     ClientCame,
     Datagram,
@@ -47,6 +46,7 @@ from gcs.shell.client_sockets import ClientSockets, Connection
 from gcs.shell.client_table import Arrival
 from gcs.shell.loop import GATHER_NS, MAX_DATAGRAMS_A_TURN, MAX_PLAN_BYTES
 from gcs.shell.recording import Recording
+from gcs.station.frame_intake import FramesRaisedError
 from tests.unit.shell.rig import DONE, EXIT_BUG, MS, START_NS, TICK_NS, Rig, recorded
 
 FIRST = Datagram(0, b"first")

@@ -1,0 +1,1 @@
+"""What one MAVLink client has asked for, and what it was answered."""

@@ -1,0 +1,1 @@
+"""The composition of vehicles, operators, links and the bridge: see `session.Session`."""

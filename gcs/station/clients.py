@@ -1,0 +1,184 @@
+"""Who talks with the station, and which of them is in control of it.
+
+One operator is in control and may ask for everything.  The others look, and may ask for what makes
+the vehicle safer (`ALWAYS_HEARD`).  Taking control over from another operator is a request of its
+own (`station_take`), and all are told of it.  This is about operators; whether the station flies
+the vehicle is the gate's (`gcs.gate.states.Control`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gcs import ipc
+from gcs.bridge.bridge import FIRST_NUMBER
+from gcs.gate import inputs as gate_inputs
+from gcs.gate.effects import Level
+from gcs.gate.refusal import Code, Refusal
+from gcs.session.effects import Emit
+from gcs.session.requests import FIRST
+from gcs.session.work import STATION, For, Log, ToGate, Work
+
+NOBODY = 0
+ALWAYS_HEARD = frozenset(
+    {"abort", "hold", "land", "rtl", "disarm", "station_take", "station_release"}
+)
+"""Requests of any operator, in control or not."""
+
+LEAVING_NS = 3_000_000_000
+"""How long an operator who leaves waits until the vehicle is seen to hold."""
+
+NODE = "link"
+
+
+@dataclass(frozen=True, slots=True)
+class Client:
+    """One operator's program."""
+
+    number: int
+    name: str
+    hold_on_leave: bool = True
+
+    @property
+    def label(self) -> str:
+        return f"operator {self.number} ({self.name})"
+
+
+class Clients:
+    """The operators that are there.  Their numbers are never given a second time."""
+
+    def __init__(self, first_name: str, first_looks: bool = False) -> None:
+        """`first_looks`: whoever started the station does not begin in control of it (a bridge)."""
+        self._there = {FIRST: Client(FIRST, first_name)}
+        self._by_default = NOBODY if first_looks else FIRST
+        self._in_control = self._by_default
+        self._leaving: dict[int, int] = {}
+        """Operators that are still to be told good-bye, and until when they wait for the hold."""
+
+    @property
+    def in_control(self) -> int:
+        """The client number, or NOBODY."""
+        return self._in_control
+
+    @property
+    def first_is_alone(self) -> bool:
+        """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
+        return all(client == FIRST or client >= FIRST_NUMBER for client in self._there)
+
+    def name(self, client: int) -> str:
+        """Empty where it is not there."""
+        known = self._there.get(client)
+        return known.name if known else ""
+
+    def __contains__(self, client: int) -> bool:
+        return client in self._there
+
+    # ----------------------------------------------------------------------- come and go
+
+    def join(self, client: int, name: str, hold_on_leave: bool) -> list[Work]:
+        """Another one has connected."""
+        joined = self._there[client] = Client(client, name, hold_on_leave)
+        return [Log(Level.DEBUG, NODE, f"{joined.label} joined"), self._told()]
+
+    def leave(self, client: int, now_ns: int) -> list[Work]:
+        """It goes in good order: the gate holds the vehicle where that is wanted, and once it is
+        seen to hold, `farewells` says good-bye."""
+        leaving = self._there.get(client)
+        if leaving is None or client in self._leaving:
+            return []
+        hold = leaving.hold_on_leave and client == self._in_control
+        self._leaving[client] = now_ns + LEAVING_NS if hold else now_ns
+        return self._hold("left") if hold else []
+
+    def lost(self, client: int, reason: str) -> list[Work]:
+        """Its connection ended without a word, perhaps after one: an operator who was in control
+        is lost, and the vehicle is held."""
+        gone = self._there.get(client)
+        if gone is None:
+            return []
+        held = client in self._leaving or client != self._in_control
+        return [*([] if held else self._hold(reason)), *self._forget(gone)]
+
+    @property
+    def anyone_leaves(self) -> bool:
+        """Whether somebody waits for its good-bye."""
+        return bool(self._leaving)
+
+    def farewells(self, settled: bool, now_ns: int) -> list[int]:
+        """Those who left and need not wait any longer: the vehicle is seen to hold, or overdue."""
+        return [
+            client for client, until_ns in self._leaving.items() if settled or now_ns >= until_ns
+        ]
+
+    def gone(self, client: int) -> list[Work]:
+        """The good-bye was said."""
+        return self._forget(self._there[client])
+
+    def _forget(self, gone: Client) -> list[Work]:
+        del self._there[gone.number]
+        self._leaving.pop(gone.number, None)
+        work: list[Work] = [Log(Level.DEBUG, NODE, f"{gone.label} left")]
+        if gone.number == self._in_control:
+            work += self._give(self._by_default if FIRST in self._there else NOBODY)
+        else:
+            work.append(self._told())
+        return work
+
+    @staticmethod
+    def _hold(reason: str) -> list[Work]:
+        """Every vehicle that is flown here: none of them has anybody in control any more."""
+        return [For(STATION, (ToGate(gate_inputs.OperatorLost(reason, for_good=False)),))]
+
+    # --------------------------------------------------------------------------- control
+
+    def give_where_free(self, client: int, ask: ipc.Ask) -> list[Work]:
+        """Before a request that `refusal` did not refuse: where nobody is in control, the first
+        who asks for something that needs it gets it."""
+        if ask.word in ALWAYS_HEARD or self._in_control != NOBODY:
+            return []
+        return self._give(client)
+
+    def refusal(self, client: int, ask: ipc.Ask) -> Refusal | None:
+        """Why this operator may not ask for it, if it may not."""
+        if client in self._leaving or client not in self._there:
+            return Refusal(Code.OPERATOR_LOST, "this operator has left")
+        if self._in_control in (client, NOBODY) or (ask.word in ALWAYS_HEARD and not ask.force):
+            return None
+        other = self._there[self._in_control].label
+        how = "take it over with --take, or by the words `station take`"
+        if client >= FIRST_NUMBER:
+            how = "MAV_CMD_REQUEST_OPERATOR_CONTROL takes it over"
+        return Refusal(
+            Code.OTHER_OPERATOR,
+            f"{other} is in control of this station; {how}",
+            (("in_control", float(self._in_control)),),
+        )
+
+    def take(self, client: int) -> list[Work]:
+        """It takes control over from whoever has it."""
+        return [] if client == self._in_control else self._give(client)
+
+    def release(self, client: int) -> list[Work]:
+        """It gives control up, and the first who asks gets it.
+
+        Until then nobody is in control, so the vehicle is held as for an operator who is lost.
+        Hovering would not do: a stream of the same client that goes on would get control again.
+        Who wants a goal flown on lets another one take over.
+        """
+        if client != self._in_control:
+            return []
+        why = f"{self._there[client].label} has released control"
+        return [*self._hold(why), *self._give(NOBODY)]
+
+    def _give(self, client: int) -> list[Work]:
+        before, self._in_control = self._there.get(self._in_control), client
+        now = self._there.get(client)
+        text = "nobody is in control of the station"
+        if now is not None:
+            text = f"{now.label} is in control of the station"
+            text += f", taken over from {before.label}" if before else ""
+        return [Log(Level.WARNING if before else Level.INFO, NODE, text), self._told()]
+
+    def _told(self) -> Emit:
+        infos = [ipc.OperatorInfo(one.number, one.name) for one in self._there.values()]
+        return Emit(ipc.Operators(infos, self._in_control))

@@ -1,0 +1,97 @@
+"""What operators say, as work of the vehicle that it is about."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import msgspec
+
+from gcs import ipc
+from gcs.bridge.bridge import Bridge
+from gcs.bridge.judge.climbs import HEIGHT_WRITTEN
+from gcs.protocol.effects import Address
+from gcs.session.work import STATION, For, Work
+from gcs.station.operators import Operators
+from gcs.station.vehicles import Vehicles
+from gcs.vehicle.gate_port import NOT_FLYING
+
+STOPS: Final = frozenset({"abort", "hold", "land", "rtl"})
+"""Where an operator names no vehicle, these are for every one that flies."""
+
+
+def line(
+    operators: Operators,
+    vehicles: Vehicles,
+    bridge: Bridge,
+    client: int,
+    command: ipc.Command,
+    now_ns: int,
+) -> For:
+    """One command of the operator `client`; what is about no vehicle is the station's.
+
+    A climb is held back for a moment after a MAVLink client has written how high one is, and an
+    arming after one has set the mode of a mission.
+    """
+    if not isinstance(command, ipc.Ask | ipc.Stream):
+        return For(STATION, tuple(operators.line(client, command, None, None, now_ns)))
+    work = [
+        For(owner, tuple(_asked(operators, vehicles, bridge, client, asked, owner, now_ns)))
+        for owner, asked in _for_each(operators, vehicles, command)
+    ]
+    return work[0] if len(work) == 1 else For(STATION, tuple(work))
+
+
+def _asked(
+    operators: Operators,
+    vehicles: Vehicles,
+    bridge: Bridge,
+    client: int,
+    command: ipc.Ask | ipc.Stream,
+    owner: int,
+    now_ns: int,
+) -> list[Work]:
+    """What is asked of one vehicle."""
+    autopilot, refusal = vehicles.known(owner, now_ns)
+    telemetry = None if owner == STATION else vehicles.of_owner(owner).telemetry
+    held = None
+    if telemetry is not None:
+        vehicle = Address(telemetry.sysid, telemetry.compid)
+        held = bridge.held_back(command, telemetry.autopilot, vehicle)
+        not_now = bridge.armings.why_not(command, telemetry.sysid)
+        refusal = refusal or not_now
+    if isinstance(command, ipc.Stream) and owner != STATION:
+        streamed = vehicles.of_owner(owner).streamed_by(client)
+        return [*streamed, *operators.line(client, command, autopilot, refusal, now_ns)]
+    if held is None:
+        return operators.line(client, command, autopilot, refusal, now_ns)
+    told = operators.line(client, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)
+    return [held, *told]
+
+
+def _for_each(
+    operators: Operators, vehicles: Vehicles, command: ipc.Ask | ipc.Stream
+) -> Iterator[tuple[int, ipc.Ask | ipc.Stream]]:
+    """The vehicles that a command is for, by slot, and what is asked of each.
+
+    The operator is answered once, by its own number; of the others a stop has the number 0.
+    """
+    sysid = operators.vehicle_of(command)
+    stops = isinstance(command, ipc.Ask) and command.word in STOPS and not command.operation
+    flying = _in_the_air(vehicles) if stops and not sysid else []
+    if not flying:
+        yield vehicles.owner_for(sysid), command
+    for number, slot in enumerate(flying):
+        yield slot, command if number == 0 else msgspec.structs.replace(command, id=0)
+
+
+def _in_the_air(vehicles: Vehicles) -> list[int]:
+    """The slots of all that were not last seen on the ground; those that are lost or stale, whose
+    answer may not come, at the end: the link to a vehicle may be there while the one from it is
+    not."""
+    known = [
+        (vehicle.gate.state in NOT_FLYING, slot)
+        for slot, vehicle in enumerate(vehicles)
+        if vehicle.telemetry is not None and not vehicle.gate.memory.on_ground
+    ]
+    return [slot for _, slot in sorted(known)]

@@ -1,0 +1,374 @@
+"""What operators' programs say, and what they are told: all of the session that is per client.
+
+Who is in control is `clients.py`, the numbers of requests `requests.py`, what became of accepted
+ones `operations.py`, who is told of which messages `subscriptions.py`.  This composes them and
+returns work for the rest of the session.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container
+
+from gcs import ipc
+from gcs.bridge.bridge import FIRST_NUMBER
+from gcs.bridge.effects import AsksPlan, StopsPlan
+from gcs.enu_text import plain_enu
+from gcs.gate import inputs as gate_inputs
+from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, StreamVerdict
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.requests import Abort, SetMode, StartMission
+from gcs.gate.states import FlightMode
+from gcs.protocol.autopilot import GENERIC, Autopilot
+from gcs.session import announcements
+from gcs.session.effects import Emit, ShowTopics
+from gcs.session.requests import FIRST, BadAskError, Requests, client_of, request_of
+from gcs.session.setup import Setup
+from gcs.session.speedup_waits import Times
+from gcs.session.work import (
+    AskGate,
+    AskMission,
+    AskOrbit,
+    Decide,
+    EndSession,
+    Log,
+    StopTransfer,
+    StreamOver,
+    Tell,
+    ToGate,
+    Work,
+)
+from gcs.station.clients import NOBODY, Clients
+from gcs.station.operations import Operations
+from gcs.station.streams import BEGIN, Streams
+from gcs.station.subscriptions import Subscriptions
+from gcs.vehicle.missions.missions import MISSION_WORDS, TRANSFER_WORDS
+from gcs.vehicle.talk.telemetry import Telemetry
+from gcs.wire.frame import Frame
+from gcs.wire.messages import CommandLong
+
+NODE = "link"
+LOGGED_LETTERS = 40
+"""Of a word that may be anything; all operators read the log."""
+STATION_WORDS = frozenset({"station_take", "station_release", "station_end"})
+
+
+class Operators:
+    """Everybody who talks with this station."""
+
+    def __init__(self, setup: Setup, times: Times) -> None:
+        self._keep = setup.config.keep
+        self._clients = Clients(setup.config.operator, first_looks=setup.config.bridge)
+        self._requests = Requests()
+        self._operations = Operations()
+        self._subscriptions = Subscriptions(times)
+        self._streams = Streams()
+
+    @property
+    def in_control(self) -> ipc.OperatorInfo | None:
+        """The operator in control of the station; None: nobody."""
+        client = self._clients.in_control
+        return ipc.OperatorInfo(client, self._clients.name(client)) if client else None
+
+    @property
+    def first_is_alone(self) -> bool:
+        """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
+        return self._clients.first_is_alone
+
+    def client_of(self, request_id: int) -> int:
+        """Who has made the request that is not over yet."""
+        return self._requests.get(request_id).client
+
+    # ----------------------------------------------------------------------- come and go
+
+    def join(self, client: int, name: str, hold_on_leave: bool) -> list[Work]:
+        return self._clients.join(client, name, hold_on_leave)
+
+    def lost(self, client: int, reason: str) -> list[Work]:
+        """Its connection has ended.  The station lives as long as its first operator, unless it
+        is to be kept."""
+        self._subscriptions.forget(client)
+        ended = self._streams.forget(client)
+        if client == FIRST and not self._keep:
+            return [*ended, EndSession(reason)]
+        return [*ended, *self._clients.lost(client, reason)]
+
+    def signalled(self, name: str) -> list[Work]:
+        """A kept station outlives the terminal of its first operator."""
+        return self.lost(FIRST, name) if name == "SIGHUP" else [EndSession(name)]
+
+    @property
+    def anyone_leaves(self) -> bool:
+        """Whether somebody waits for its good-bye."""
+        return self._clients.anyone_leaves
+
+    def farewells(self, settled: bool, words: str, log_path: str, now_ns: int) -> list[Work]:
+        """Good-bye to those who leave a station that lives on; `words` say how the vehicle is."""
+        work: list[Work] = []
+        for client in self._clients.farewells(settled, now_ns):
+            self._subscriptions.forget(client)
+            sentence = words if client == self._clients.in_control else self._goes_on()
+            work.append(Emit(ipc.Bye(0, log_path, sentence, goes_on=True), client))
+            work += self._clients.gone(client)
+        return work
+
+    def _goes_on(self) -> str:
+        """What the station does on, for one that leaves it."""
+        running = ", ".join(
+            f"operation {each.id} ({each.asked.word})"
+            for each in self._operations.listed()
+            if each.ended_ns is None
+        )
+        return "the station goes on" + (f", with {running}" if running else "")
+
+    def _leave(self, client: int, reason: str, now_ns: int) -> list[Work]:
+        if client == FIRST and not self._keep:
+            return [EndSession(reason)]
+        return self._clients.leave(client, now_ns)
+
+    # ------------------------------------------------------------------------------ lines
+
+    def vehicle_of(self, command: ipc.Ask | ipc.Stream) -> int:
+        """The system id of the vehicle that it is for, 0 for the first: an abort of an operation
+        is for that one's."""
+        if isinstance(command, ipc.Ask) and command.operation:
+            operation = self._operations.get(command.operation)
+            return command.vehicle if operation is None else operation.asked.vehicle
+        return command.vehicle
+
+    def line(
+        self,
+        client: int,
+        command: ipc.Command,
+        autopilot: Autopilot | None,
+        no_vehicle: Refusal | None,
+        now_ns: int,
+    ) -> list[Work]:
+        """One command; `autopilot` is the vehicle's, None before one is heard; `no_vehicle` says
+        why nothing can be asked of any, such as several that are heard."""
+        match command:
+            case ipc.Ask():
+                return self._ask(client, command, autopilot, no_vehicle, now_ns)
+            case ipc.Stream():
+                return self._stream(client, command, no_vehicle, now_ns)
+            case ipc.Pending(goal_enu, _):
+                if client != self._clients.in_control:
+                    return []  # who only looks cannot send it
+                text = f"Keyboard: {plain_enu(goal_enu)}"
+                return [Log(Level.INFO, "keyboard_manager", text)]
+            case ipc.Leave(reason):
+                return self._leave(client, reason, now_ns)
+            case ipc.Subscribe(names):
+                return [*self._subscriptions.subscribe(client, names, now_ns)]
+            case ipc.ListOperations(number):
+                return [Emit(ipc.OperationList(number, self._operations.listed()), client)]
+            case ipc.WatchTopics():
+                return [ShowTopics(client)]
+            case ipc.Join():
+                return [Emit(ipc.Trouble("this connection has joined already"), client)]
+
+    def _ask(
+        self,
+        client: int,
+        ask: ipc.Ask,
+        autopilot: Autopilot | None,
+        no_vehicle: Refusal | None,
+        now_ns: int,
+    ) -> list[Work]:
+        """What cannot be judged at all takes no control."""
+        refusal = self._clients.refusal(client, ask)
+        if refusal is not None:
+            return self._refuse(self._requests.open(ask, client), ask, refusal)
+        if ask.word in STATION_WORDS:
+            return self._ask_station(client, ask, now_ns)
+        if ask.operation:
+            return self._ask_stop(client, ask)
+        if no_vehicle is not None:
+            return self._refuse(self._requests.open(ask, client), ask, no_vehicle)
+        if ask.word in MISSION_WORDS:
+            given = self._give_where_free(client, ask, now_ns)
+            return [*given, AskMission(self._requests.open(ask, client), ask)]
+        if ask.word == "orbit":
+            given = self._give_where_free(client, ask, now_ns)
+            return [*given, AskOrbit(self._requests.open(ask, client), ask, client)]
+        try:
+            request = request_of(ask, autopilot or GENERIC)
+        except BadAskError as error:
+            refused = ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
+            return [Emit(refused, client)]
+        given = self._give_where_free(client, ask, now_ns)
+        request_id = self._requests.open(ask, client)
+        if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
+            # The mission mode by its name is a mission start, and is verified like one.
+            return [*given, AskMission(request_id, ask)]
+        return [*given, AskGate(request_id, request)]
+
+    def _stream(
+        self, client: int, sample: ipc.Stream, no_vehicle: Refusal | None, now_ns: int
+    ) -> list[Work]:
+        """One sample: for the gate, if this operator is in control or nobody is."""
+        refusal = self._clients.refusal(client, BEGIN)
+        if refusal is not None:
+            return self._refuse_sample(client, sample, refusal, now_ns)
+        if no_vehicle is not None:
+            return self._refuse_sample(client, sample, no_vehicle, now_ns)
+        free = self._clients.in_control == NOBODY
+        if free and not self._streams.goes_on(client, sample, now_ns):
+            return []
+        # Who is free to take control has it when the gate has let the sample through.
+        return [ToGate(self._streams.seen(client, sample, now_ns))]
+
+    def _refuse_sample(
+        self, client: int, sample: ipc.Stream, refusal: Refusal, now_ns: int
+    ) -> list[Work]:
+        """One that reaches no gate: told where that is news."""
+        told = self._streams.refuse(client, sample, refusal, now_ns)
+        if told is None:
+            return []
+        text = f"stream of {told.source}: refused {refusal.code.value}: {refusal.sentence}"
+        return [*self._tell_stream(told, 0, now_ns), Log(Level.WARNING, NODE, text)]
+
+    def _give_where_free(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
+        """Control, to the first who asks for something that needs it."""
+        return self._without_streams(client, self._clients.give_where_free(client, ask), now_ns)
+
+    def _without_streams(self, client: int, given: list[Work], now_ns: int) -> list[Work]:
+        """`client` is given control: the stream of whoever had it is over, and not only when it has
+        been silent for a while."""
+        others = self._streams.others(client, now_ns) if given else []
+        ends = [
+            StreamOver(vehicle, self._requests.open(_end_of_stream(vehicle), other))
+            for other, vehicle in others
+        ]
+        return [*ends, *given]
+
+    def end_stream(self, client: int, sysid: int) -> list[Work]:
+        """The stream that the station has made in this operator's name is over."""
+        return [StreamOver(sysid, self._requests.open(_end_of_stream(sysid), client))]
+
+    def _ask_station(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
+        """What is asked of the station, not of the vehicle, is done at once."""
+        done = _done(self._requests.open(ask, client), "")
+        if ask.word == "station_take":
+            taken = self._clients.take(client)
+            return [*self._without_streams(client, taken, now_ns), *done]
+        if ask.word == "station_release":
+            return [*self._clients.release(client), *done]
+        return [*done, EndSession(f"operator {client} ended the station")]
+
+    def _ask_stop(self, client: int, ask: ipc.Ask) -> list[Work]:
+        """An abort of one operation: nothing else is stopped in its place if that has ended."""
+        request_id = self._requests.open(ask, client)
+        operation = self._operations.get(ask.operation)
+        if ask.word != "abort" or operation is None or operation.ended_ns is not None:
+            ended = "is not known" if operation is None else f"has ended: {operation.state}"
+            refusal = Refusal(Code.NOT_RUNNING, f"operation {ask.operation} {ended}")
+            return self._refuse(request_id, ask, refusal)
+        if operation.asked.word in TRANSFER_WORDS:
+            return [StopTransfer(ask.operation), *_done(request_id, "the transfer is stopped")]
+        return [AskGate(request_id, Abort())]
+
+    def ask_plan(self, asked: AsksPlan, no_vehicle: Refusal | None, now_ns: int) -> list[Work]:
+        """A MAVLink client brings a plan, or asks for one to be taken off."""
+        client, ask = asked.client, asked.ask
+        request_id = self._requests.open(ask, client)
+        refusal = self._clients.refusal(client, ask) or no_vehicle
+        if refusal is not None:
+            return self._refuse(request_id, ask, refusal)
+        given = self._give_where_free(client, ask, now_ns)
+        return [*given, AskMission(request_id, ask, asked.plan, asked.kind)]
+
+    def stop_plan(self, stopped: StopsPlan) -> list[Work]:
+        """The client does not want it any more."""
+        request_id = self._requests.number_of(stopped.client, stopped.ask_id)
+        return [] if request_id is None else [StopTransfer(request_id)]
+
+    def refuse(self, client: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
+        """What is refused before it is a request: it has a number, a verdict and a record too."""
+        return self._refuse(self._requests.open(ask, client), ask, refusal)
+
+    @staticmethod
+    def _refuse(request_id: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
+        text = f"{ask.word[:LOGGED_LETTERS]}: refused {refusal.code.value}: {refusal.sentence}"
+        return [Decide(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)]
+
+    # ---------------------------------------------------------------------------- answers
+
+    def asked_of_gate(self, asked: AskGate) -> list[Work]:
+        """The gate's input for a request, and the line that says so.
+
+        The start of a mission is prepared before: whoever has lost control meanwhile starts none.
+        """
+        made = self._requests.get(asked.request_id)
+        if isinstance(asked.request, StartMission):
+            refusal = self._clients.refusal(made.client, made.ask)
+            if refusal is not None:
+                return self._refuse(asked.request_id, made.ask, refusal)
+        given = gate_inputs.Requested(asked.request_id, made.source, asked.request)
+        return [announcements.requested(made, asked.request), ToGate(given)]
+
+    def verdict(self, told: Decide, sysid: int, now_ns: int) -> list[Work]:
+        """To the operator who asked; an accepted request is an operation, which all are told."""
+        request_id, requests = told.request_id, self._requests
+        asked = requests.get(request_id)
+        name = self._clients.name(asked.client)
+        work: list[Work] = [*announcements.verdict(told, asked, sysid)]
+        if asked.client >= FIRST_NUMBER:
+            work.append(announcements.bridge_decision(told, asked, name, sysid, now_ns))
+        if told.ruling is not Ruling.ACCEPTED:
+            requests.close(request_id)
+            return work
+        begun = self._operations.begin(request_id, asked.ask, asked.client, name, now_ns)
+        return [*work, Emit(begun)]
+
+    def outcome(self, told: Outcome, sysid: int, now_ns: int) -> list[Work]:
+        """The same, of how it ended."""
+        asked = self._requests.close(told.request_id)
+        ended = self._operations.end(told, now_ns)
+        return [*announcements.outcome(told, asked, sysid), Emit(ended)]
+
+    def stream_verdict(self, told: StreamVerdict, sysid: int, now_ns: int) -> list[Work]:
+        """What the gate makes of somebody's setpoint stream, where that changes.
+
+        Where nobody is in control, whose samples are flown gets it; a refused one takes none."""
+        client = client_of(told.source)
+        given = [] if told.refusal else self._give_where_free(client, BEGIN, now_ns)
+        verdict = self._streams.verdict(told, sysid, now_ns)
+        return [*given, *self._tell_stream(verdict, sysid, now_ns)]
+
+    def _tell_stream(self, told: StreamVerdict, sysid: int, now_ns: int) -> list[Work]:
+        """To the operator, and where it is a MAVLink client to whoever watches the bridge."""
+        client = client_of(told.source)
+        work: list[Work] = [*announcements.stream_verdict(told, client, sysid)]
+        if client >= FIRST_NUMBER:
+            name = self._clients.name(client)
+            work.append(announcements.bridge_stream_decision(told, client, name, sysid, now_ns))
+        return work
+
+    def second(self, now_ns: int) -> list[Work]:
+        """Once a second: what has ended because nothing more came."""
+        return self._streams.second(now_ns)
+
+    def tell(self, told: Tell) -> list[Work]:
+        return [Emit(told.event, self._requests.get(told.request_id).client)]
+
+    def missing_messages(self, telemetry: Telemetry, now_ns: int) -> list[CommandLong]:
+        """Commands that ask the vehicle for what somebody subscribed to and does not hear."""
+        return [*self._subscriptions.missing(telemetry, now_ns)]
+
+    @property
+    def subscribed(self) -> Container[int]:
+        """Ids of the messages that somebody has subscribed to."""
+        return self._subscriptions.subscribed
+
+    def heard(self, frame: Frame, now_ns: int) -> list[Work]:
+        """A good frame of the vehicle, for those who subscribed to such messages."""
+        return [*self._subscriptions.heard(frame, now_ns)]
+
+
+def _end_of_stream(vehicle: int) -> ipc.Ask:
+    return ipc.Ask(0, "stream_end", vehicle=vehicle)
+
+
+def _done(request_id: int, sentence: str) -> list[Work]:
+    complete = Outcome(request_id, OutcomeKind.COMPLETE, None, sentence or "complete")
+    return [Decide(request_id, Ruling.ACCEPTED), complete]

@@ -1,0 +1,96 @@
+"""Whether the vehicles of one session come too close to each other.
+
+Looked at with every position of one that flies, against all others that fly: as a condition of
+both.  Each position is in its own vehicle's frame, so it goes through latitude and longitude where
+the frames differ.  A vehicle without an origin or a fresh position is compared with nobody: that it
+lacks them is a condition of its own.
+"""
+
+from __future__ import annotations
+
+from gcs.frames import Vec3
+from gcs.gate.airspace.projection import Projection
+from gcs.gate.airspace.separation import Track, closest_approach, is_too_close
+from gcs.gate.condition import Condition
+from gcs.gate.policy.policy import SeparationLimits
+from gcs.session.work import For, Work
+from gcs.station.vehicles import Vehicles
+from gcs.vehicle.gate_port import condition
+from gcs.vehicle.talk.telemetry import Telemetry
+from gcs.vehicle.vehicle import Vehicle
+
+
+class Separation:
+    """Between every two vehicles, each by its slot."""
+
+    def __init__(self, limits: SeparationLimits) -> None:
+        self._limits = limits
+        self._close: dict[int, set[int]] = {}
+        """Of every vehicle: those that it is too close to."""
+
+    def moved(self, vehicles: Vehicles, slot: int, now_ns: int) -> list[Work]:
+        """The vehicle in that slot has told its position."""
+        if len(vehicles) == 1:
+            return []
+        work: list[Work] = []
+        for other in range(len(vehicles)):
+            if other != slot:
+                work += self._pair(vehicles, slot, other, now_ns)
+        return work
+
+    def _pair(self, vehicles: Vehicles, slot: int, other: int, now_ns: int) -> list[Work]:
+        was = other in self._close.setdefault(slot, set())
+        text = self._too_close(vehicles.of_owner(slot), vehicles.of_owner(other), was, now_ns)
+        if was == bool(text):
+            return []
+        work: list[Work] = []
+        for mine, others in ((slot, other), (other, slot)):
+            close = self._close.setdefault(mine, set())
+            before = bool(close)
+            close ^= {others}
+            if before != bool(close):
+                name = f"vehicle {vehicles.of_owner(others).sysid}: " if text else ""
+                changed = condition(Condition.TOO_CLOSE, bool(close), name + text)
+                work.append(For(mine, (changed,)))
+        return work
+
+    def _too_close(self, one: Vehicle, other: Vehicle, was: bool, now_ns: int) -> str:
+        """In words how close they come; empty where it is far enough, or one does not fly."""
+        here, there = one.flying(now_ns), other.flying(now_ns)
+        if here is None or there is None:
+            return ""
+        assert there.pos_ned is not None
+        seen_from_here = _in_frame_of(here, there, there.pos_ned)
+        if seen_from_here is None or here.pos_ned is None:
+            return ""
+        limits = self._limits
+        approach = closest_approach(
+            _track(here, here.pos_ned, now_ns),
+            _track(there, seen_from_here, now_ns),
+            limits.within_s,
+        )
+        if not is_too_close(approach, limits, was=was):
+            return ""
+        return (
+            f"{approach.least_m:.1f} m away in {approach.in_s:.1f} s, if both fly on "
+            f"({limits.least_m:g} m are to be kept)"
+        )
+
+
+def _in_frame_of(here: Telemetry, there: Telemetry, pos_ned: Vec3) -> Vec3 | None:
+    """A place in the local frame of `there` in the one of `here`; None where one is not known."""
+    if here.origin is None or there.origin is None:
+        return None
+    if (here.origin, here.autopilot.name) == (there.origin, there.autopilot.name):
+        return pos_ned
+    geodetic = Projection(there.origin, there.autopilot.name).geodetic_from_ned(pos_ned)
+    return Projection(here.origin, here.autopilot.name).ned_from_geodetic(*geodetic)
+
+
+def _track(telemetry: Telemetry, pos_ned: Vec3, now_ns: int) -> Track:
+    return Track(
+        pos_ned,
+        telemetry.v_ned,
+        age_s=(now_ns - telemetry.position_ns) / 1e9,
+        error_m=telemetry.health.accuracy_h_m or 0.0,
+    )

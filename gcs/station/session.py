@@ -1,0 +1,492 @@
+"""The composition: everything that reaches the station, and everything that leaves it.
+
+`handle(input, now_ns) -> effects`; no socket, no clock, no file.  Bytes become frames (`links.py`),
+frames what the vehicle reports (`vehicle.py`), that becomes inputs of its gate (`gate_port.py`),
+what the gate decides becomes commands and setpoints; and all of it becomes the record.
+"""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from gcs import ipc
+from gcs.bridge.effects import (
+    Answers,
+    AsksForStreams,
+    AsksPlan,
+    AsksVehicle,
+    ChangesRallyPoints,
+    Joined,
+    Lost,
+    Notes,
+    OfVehicle,
+    Refuses,
+    Says,
+    StopsPlan,
+    ToLink,
+    ToVehicle,
+)
+from gcs.exit_codes import ExitCode
+from gcs.gate import effects as gate_effects
+from gcs.gate.condition import Condition
+from gcs.gate.effects import CommandKind, Level
+from gcs.gate.inputs import PositionSeen, Tick
+from gcs.gate.machine.gate import Gate
+from gcs.gate.requests import EndStream
+from gcs.protocol.effects import Address, Send
+from gcs.session import announcements
+from gcs.session.effects import Effect, Emit, Finish
+from gcs.session.inputs import (
+    ClientCame,
+    ClientFlooded,
+    ClientGone,
+    Datagram,
+    DiskLow,
+    FileRead,
+    FileWritten,
+    Input,
+    LinkEvent,
+    OperatorGone,
+    OperatorJoined,
+    OperatorLine,
+    OperatorNoise,
+    OtherInput,
+    RecorderChanged,
+    RecorderGrew,
+    SignalCame,
+    SimGone,
+    SimLine,
+    Wake,
+)
+from gcs.session.requests import FIRST
+from gcs.session.setup import Setup
+from gcs.session.speedup_waits import Times
+from gcs.session.work import (
+    STATION,
+    AskGate,
+    AskMission,
+    AskOrbit,
+    CheckStart,
+    Decide,
+    EndSession,
+    For,
+    Log,
+    OrbitSample,
+    PlaceFence,
+    SecondDue,
+    SnapshotDue,
+    StopTransfer,
+    StreamOver,
+    Tell,
+    ToGate,
+    Work,
+)
+from gcs.station.bridge_port import BridgePort
+from gcs.station.ending import Ending
+from gcs.station.frame_intake import FramesRaisedError, Incoming
+from gcs.station.links import Links
+from gcs.station.operator_lines import line
+from gcs.station.operators import Operators
+from gcs.station.queue import WorkQueue
+from gcs.station.separation import Separation
+from gcs.station.signatures import NO_KEYS, Keys, Signatures
+from gcs.station.ticks import Ticks
+from gcs.station.vehicles import FIRST as FIRST_SLOT
+from gcs.station.vehicles import Vehicles
+from gcs.station.waiting_for_vehicle import WaitingForVehicle
+from gcs.vehicle.gate_port import condition
+from gcs.vehicle.record_items import fault, hello, introduction, recorded, sim_line
+from gcs.vehicle.snapshot import snapshot
+from gcs.vehicle.talk.telemetry import Telemetry
+
+OTHER_STATION_NS = 5_000_000_000
+"""How long after its last frame a station with our id still counts as there."""
+
+NODE = "link"
+MAX_FAULTS = 10
+SNAPSHOTS_A_LOOK = 5
+"""Whoever started a bridge only looks: alone, it is shown one snapshot of so many, two a second."""
+
+
+class Session:
+    """Any number of operators, links and vehicles; from the first byte to `Finish`."""
+
+    def __init__(self, setup: Setup, now_ns: int, keys: Keys = NO_KEYS) -> None:
+        """`keys` are no part of the set-up, which is recorded."""
+        config = setup.config
+        self._setup = setup
+        self._start_ns = now_ns
+        self._times = Times(config.speedup)
+        self._ticks = Ticks(now_ns, self._times)
+        count, streams, waiting = len(setup.endpoints), setup.streams, setup.waiting
+        self._signatures = Signatures(
+            keys,
+            config.sysid,
+            config.compid,
+            count,
+            unsigned_taken=setup.policy.signing.unsigned == "warn",
+            since_ns=now_ns,
+        )
+        self._links = Links(config.sysid, config.compid, count, streams, waiting, self._signatures)
+        self._vehicles = Vehicles(config, setup.policy, self._times, now_ns)
+        self._separation = Separation(setup.policy.separation)
+        self._operators = Operators(setup, self._times)
+        self._bridge = BridgePort(
+            config,
+            setup.endpoints,
+            setup.policy,
+            self._times,
+            self._vehicles,
+            self._operators,
+            self._links,
+        )
+        self._deadline_ns: int | None = None
+        """As it was last looked up; None once something may have changed it."""
+        self._parts_ns: int | None = None
+        """The same without ticks."""
+        self._queue = WorkQueue(self._step)
+        self._incoming = Incoming(
+            Address(config.sysid, config.compid),
+            count,
+            self._links,
+            self._signatures,
+            self._queue,
+            self._vehicles,
+            self._operators,
+            self._bridge,
+        )
+        self._ending = Ending(setup, self._times, self._vehicles, self._operators)
+        self._waiting = WaitingForVehicle(
+            setup, self._times, self._vehicles, self._signatures, now_ns
+        )
+        self._log_path = setup.log_path
+        self._recording = bool(setup.log_path)
+        self._recorded_bytes = 0
+        self._snapshots = 0
+        """That were due."""
+        self._faults = 0
+        self._frames_raised = 0
+        """Frames of a run that have raised, of which `fault` was not told yet."""
+        self._introduced = False
+        self._unfinished: Input | None = None
+        """The input that is being handled: none of its effects has left yet."""
+
+    @property
+    def deadline_ns(self) -> int:
+        """When `Wake` is due; no side effects."""
+        if self._deadline_ns is None:
+            waits = (self._vehicles.deadline_ns, self._bridge.bridge.deadline_ns)
+            parts_ns = self._parts_ns = min((ns for ns in waits if ns is not None), default=None)
+            tick_ns = self._ticks.next_ns
+            self._deadline_ns = tick_ns if parts_ns is None else min(tick_ns, parts_ns)
+        return self._deadline_ns
+
+    def _waited(self, now_ns: int) -> bool:
+        """Whether some part's wait is over, or a job goes on: at most ticks none does."""
+        if self.deadline_ns <= now_ns and self._parts_ns is not None and self._parts_ns <= now_ns:
+            return True
+        return any(vehicle.plan_transfer for vehicle in self._vehicles)
+
+    @property
+    def gate(self) -> Gate:
+        """The first vehicle's; to look at, not to handle."""
+        return self._vehicles.first.gate
+
+    @property
+    def nothing_heard(self) -> bool:
+        """No vehicle was heard, and none of our own was started: there is nothing to keep."""
+        return self._vehicles.first.telemetry is None and self._setup.config.sim is None
+
+    @property
+    def telemetry(self) -> Telemetry | None:
+        """The first vehicle as it reports itself, None before one is heard."""
+        return self._vehicles.first.telemetry
+
+    @property
+    def vehicles(self) -> Vehicles:
+        """To look at, not to handle."""
+        return self._vehicles
+
+    def handle(self, given: Input, now_ns: int) -> list[Effect]:
+        """Everything that follows from `given` at `now_ns`, in order.
+
+        Raises FramesRaisedError where single frames of a run have raised, with all the rest."""
+        queue = self._queue
+        self._unfinished = given
+        if not self._introduced:
+            self._introduced = True
+            begin = [*introduction(self._setup, self._start_ns), *self._remind()]
+            queue.run(begin, now_ns)
+        if isinstance(given, Datagram):
+            if not self._incoming.datagram(given, now_ns) and not self._ending.under_way:
+                self._unfinished = None
+                return queue.take()
+        else:
+            queue.run([*recorded(given), *self._begin(given, now_ns)], now_ns)
+        queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
+        queue.run(self._ending.if_due(self._log_path, now_ns), now_ns)
+        self._unfinished = self._deadline_ns = None
+        dropped = self._incoming.take_dropped()
+        if dropped:
+            self._frames_raised = len(dropped)
+            raise FramesRaisedError(queue.take(), dropped)
+        return queue.take()
+
+    def fault(self, given: Input, report: str, now_ns: int) -> list[Effect]:
+        """Handling `given` raised an exception, which is a bug of ours: keep the vehicle safe.
+
+        Bytes or words that we cannot take are dropped, logged and recorded.  Where it happens on
+        the clock, or again and again, the vehicle is told to hold and the station ends.  An
+        operator who has joined loses the connection instead: nobody's words end the station, and
+        no MAVLink client's either.
+        """
+        self._queue.drop()
+        self._incoming.take_dropped()
+        self._deadline_ns = None
+        handled, self._unfinished = self._unfinished is None, None
+        if self._frames_raised:
+            handled, self._frames_raised = False, self._frames_raised - 1
+        visitor = isinstance(given, OperatorJoined | OperatorLine) and given.client != FIRST
+        of_client = isinstance(given, Datagram) and self._incoming.of_client(given)
+        self._faults += not (visitor or of_client)
+        text = f"internal error: {report.splitlines()[-1]}"
+        work: list[Work] = [
+            fault(given, report, handled, now_ns),
+            Log(Level.FATAL, NODE, text),
+        ]
+        if isinstance(given, OperatorJoined | OperatorLine) and visitor:
+            bye = ipc.Bye(ExitCode.BUG, "", "an internal error of the station", goes_on=True)
+            work.append(Emit(bye, given.client))
+        if isinstance(given, Wake) or self._faults > MAX_FAULTS:
+            self._ending.finished = True
+            work += self._vehicles.each(
+                lambda each: [w for w in each.hold_without_gate(now_ns) if isinstance(w, Send)]
+            )
+            work.append(Finish(ExitCode.BUG, "an internal error: the vehicle was told to hold"))
+        self._queue.run(work, now_ns)
+        return self._queue.take()
+
+    # ----------------------------------------------------------------------------- the work
+
+    def _begin(self, given: OtherInput, now_ns: int) -> list[Work]:
+        """What an input means first; `_step` does the rest."""
+        match given:
+            case Wake():
+                if not self._waited(now_ns):
+                    return self._ticks.wake(now_ns)
+                of_clients = self._bridge.bridge.wake(now_ns)
+                of_vehicles = self._vehicles.each(lambda each: each.wake(now_ns))
+                return [*of_clients, *of_vehicles, *self._ticks.wake(now_ns)]
+            case OperatorJoined():
+                return self._welcome(given, now_ns)
+            case OperatorLine(client, command):
+                vehicles, bridge = self._vehicles, self._bridge.bridge
+                return [line(self._operators, vehicles, bridge, client, command, now_ns)]
+            case OperatorNoise(client, text):
+                return [Emit(ipc.Trouble(f"not a command: {text}"), client)]
+            case OperatorGone(client, reason):
+                return self._operators.lost(client, reason)
+            case SignalCame(name):
+                return self._operators.signalled(name)
+            case LinkEvent(_, text, trouble):
+                return [Log(Level.WARNING if trouble else Level.INFO, NODE, text)]
+            case ClientCame(link, name, stream, verified):
+                self._links.open(link, stream)
+                return [*self._bridge.bridge.came(link, name, verified=verified)]
+            case ClientGone(link, reason):
+                self._links.close(link)
+                self._signatures.forget(link)
+                return [*self._bridge.bridge.gone(link, reason)]
+            case ClientFlooded(link, dropped):
+                return [*self._bridge.bridge.flooded(link, dropped)]
+            case FileRead() | FileWritten():
+                return self._vehicles.each(lambda each: each.file(given, now_ns))
+            case RecorderChanged():
+                return self._recorder(given)
+            case RecorderGrew(size_bytes):
+                self._recorded_bytes = size_bytes
+                return []
+            case DiskLow():
+                return [_disk_low(given)]
+            case SimLine(text):
+                return [sim_line(text, now_ns)]
+            case SimGone(exit_code):
+                return self._sim_gone(exit_code)
+        assert_never(given)
+
+    def _step(self, item: Work, owner: int, now_ns: int) -> list[Work]:
+        """Hand one item of work to the part that it is for; `owner` is whose it is."""
+        vehicle = self._vehicles.of_owner(owner)
+        match item:
+            case ToGate(Tick()) if owner == STATION:
+                one = self._operators.in_control
+                client = 0 if one is None else one.client
+                orbits = self._vehicles.each(lambda v: v.orbit_sample(client, now_ns))
+                return [*orbits, *self._vehicles.to_all(item)]
+            case ToGate() if owner == STATION:
+                return self._vehicles.to_all(item)
+            case ToGate(given) if type(given) is PositionSeen:  # nearly all of them
+                work = vehicle.ask_gate(given, now_ns)
+                return work + self._separation.moved(self._vehicles, owner, now_ns)
+            case ToGate(given):
+                answered = self._bridge.before_gate(given, vehicle.sysid, now_ns)
+                return [*answered, *vehicle.ask_gate(given, now_ns)]
+            case Send(message):
+                telemetry = vehicle.telemetry
+                if telemetry is None:
+                    return []
+                return [*self._links.send(telemetry.link, message, now_ns)]
+            case gate_effects.Outcome():
+                # Whoever waits for an end looks at the vehicle next: not at how it was before.
+                ended = self._operators.outcome(item, vehicle.sysid, now_ns)
+                return [Emit(self._snapshot(now_ns)), *ended]
+            case gate_effects.StreamVerdict():
+                return self._operators.stream_verdict(item, vehicle.sysid, now_ns)
+            case gate_effects.SendCommand(kind=CommandKind.ARM):
+                self._bridge.bridge.armings.sent(vehicle.sysid, now_ns)
+                return vehicle.carry_out(item, now_ns)
+            case (
+                gate_effects.SendSetpoint()
+                | gate_effects.SendCommand()
+                | gate_effects.CancelCommand()
+                | gate_effects.SwitchedFence()
+                | gate_effects.Verdict()
+                | gate_effects.Transition()
+                | gate_effects.Say()
+                | PlaceFence()
+                | CheckStart()
+            ):
+                return vehicle.carry_out(item, now_ns)
+            case Log():
+                prefix = self._vehicles.prefix(owner)
+                told = announcements.log(item, now_ns, prefix)
+                return [*told, *self._bridge.logged(item, vehicle, now_ns)]
+            case AskGate():
+                return self._operators.asked_of_gate(item)
+            case AskMission():
+                return vehicle.ask_mission(item, now_ns)
+            case AskOrbit():
+                return vehicle.ask_orbit(item, now_ns)
+            case OrbitSample(client, sample):
+                if sample is None:
+                    return self._operators.end_stream(client, vehicle.sysid)
+                autopilot, refusal = vehicle.for_operators(now_ns)
+                return self._operators.line(client, sample, autopilot, refusal, now_ns)
+            case StopTransfer(request_id):
+                return self._vehicles.each(lambda each: each.stop_transfer(request_id))
+            case StreamOver(sysid, request_id):
+                slot = self._vehicles.slot_of(sysid)
+                end = AskGate(request_id, EndStream())
+                return [For(FIRST_SLOT if slot is None else slot, (end,))]
+            case Decide():
+                return self._operators.verdict(item, vehicle.sysid, now_ns)
+            case Tell():
+                return self._operators.tell(item)
+            case EndSession(reason):
+                # After it, as the lost operators' requests end there.
+                held = self._bridge.bridge.leave()
+                return [For(STATION, (*self._ending.begin(reason, now_ns), *held))]
+            case SecondDue():
+                return self._every_second(now_ns)
+            case SnapshotDue():
+                stops = self._vehicles.each(lambda each: each.predicted_stop())
+                left_out = self._setup.config.bridge and self._operators.first_is_alone
+                self._snapshots += 1
+                if left_out and self._snapshots % SNAPSHOTS_A_LOOK != 1:
+                    return stops
+                return [Emit(self._snapshot(now_ns)), *stops]
+            case (
+                Joined() | Lost() | Says() | Refuses() | AsksPlan() | StopsPlan() | Notes() | Emit()
+            ):
+                return self._bridge.as_operator(item, vehicle, now_ns)
+            case OfVehicle(sysid, effects):
+                slot = self._vehicles.slot_of(sysid)
+                return [For(FIRST_SLOT if slot is None else slot, effects)]
+            case ChangesRallyPoints() if owner == STATION:
+                return self._vehicles.each(lambda each: each.rally_points_change(now_ns))
+            case ChangesRallyPoints():
+                return vehicle.rally_points_change(now_ns)
+            case AsksForStreams() if owner == STATION:
+                return self._vehicles.to_all(item)
+            case AsksForStreams(msgids):
+                return vehicle.ask_for_streams(msgids, now_ns)
+            case ToVehicle() | AsksVehicle() | ToLink() | Answers():
+                links = self._vehicles.links if owner == STATION else vehicle.links
+                return [*self._bridge.pass_on(item, links, now_ns)]
+            case _:
+                raise AssertionError(f"the queue keeps {item} for itself")
+
+    # ------------------------------------------------------------------------------ time
+
+    def _every_second(self, now_ns: int) -> list[Work]:
+        """Heartbeat, what is missing, and the slow half of the record."""
+        first = self._vehicles.first
+        work: list[Work] = [*self._links.heartbeat(now_ns), *self._remind()]
+        work += self._bridge.second(now_ns, self._links.counts, self._signatures)
+        work += self._signatures.second(now_ns)
+        work += self._operators.second(now_ns)
+        if first.telemetry is None:
+            return work + self._waiting.second(now_ns)
+        if now_ns - self._incoming.other_station_ns > self._times.real_ns(OTHER_STATION_NS):
+            work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
+        wanted = self._operators.missing_messages(first.telemetry, now_ns)
+        work += self._vehicles.each(lambda each: each.second(now_ns))
+        return [*work, For(FIRST_SLOT, tuple(first.send_own(wanted, now_ns)))]
+
+    def _remind(self) -> list[Work]:
+        return self._vehicles.each(lambda each: each.remind())
+
+    # -------------------------------------------------------------------------- operator
+
+    def _welcome(self, joined: OperatorJoined, now_ns: int) -> list[Work]:
+        """What everybody else knows already, for one that has just joined."""
+        client, fence = joined.client, self._vehicles.first.fence_shapes
+        return [
+            Emit(hello(self._setup, self._log_path, fence, client), client),
+            Emit(self._snapshot(now_ns), client),
+            *self._operators.join(client, joined.name, joined.hold_on_leave),
+        ]
+
+    # ---------------------------------------------------------------------------- record
+
+    def _recorder(self, news: RecorderChanged) -> list[Work]:
+        self._recording, self._log_path = news.recording, news.path
+        level = Level.INFO if news.recording else Level.ERROR
+        failed = condition(Condition.RECORDER_FAILED, not news.recording, news.text)
+        return [Log(level, "recorder", news.text), failed]
+
+    def _sim_gone(self, exit_code: int) -> list[Work]:
+        """Before it was heard, there is nothing to wait for; later, its silence tells."""
+        text = f"the vehicle's process ended by itself with exit code {exit_code}"
+        log = Log(Level.ERROR, NODE, text)
+        if self._vehicles.first.telemetry is not None:
+            return [log]
+        hint = "the lines from `sim` in the log tell why"
+        return [
+            log,
+            Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)),
+            *self._ending.finish(ExitCode.NO_VEHICLE, text),
+        ]
+
+    def _snapshot(self, now_ns: int) -> ipc.Snapshot:
+        first = self._vehicles.first
+        return snapshot(
+            first.gate,
+            first.telemetry,
+            now_ns,
+            mission_total=first.mission_total,
+            losses=first.losses,
+            log_path=self._log_path,
+            recording=self._recording,
+            recorded_bytes=self._recorded_bytes,
+            vehicles=self._vehicles.heard_names(now_ns),
+            listening=first.listening(now_ns),
+            in_control=self._operators.in_control,
+        )
+
+
+def _disk_low(news: DiskLow) -> Log:
+    """The warning, while there is still time to make room."""
+    left = "" if news.left_s is None else f", for {news.left_s / 60:.0f} min at this rate"
+    text = f"the disk of the record has {news.free_bytes / 1e6:.0f} MB left{left}"
+    return Log(Level.ERROR if news.critical else Level.WARNING, "recorder", text)

@@ -1,0 +1,1 @@
+"""How well one vehicle is: battery, GPS, link and position, beside the policy's limits."""

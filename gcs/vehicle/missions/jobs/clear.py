@@ -1,0 +1,48 @@
+"""Clear: the mission on board is taken off; or, for a client, its fence or rally points."""
+
+from __future__ import annotations
+
+from gcs.gate.effects import OutcomeKind
+from gcs.gate.inputs import MissionLoaded
+from gcs.protocol.mission import MissionClear
+from gcs.session.inputs import FileRead, FileWritten
+from gcs.session.work import ToGate
+from gcs.vehicle.missions.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView
+from gcs.wire.ids import MissionType
+from gcs.wire.messages import MissionItemInt
+
+GONE = {
+    MissionType.MISSION: "no mission is on board",
+    MissionType.FENCE: "no fence is on board",
+    MissionType.RALLY: "no rally points are on board",
+}
+
+
+class Clear(Job):
+    """The plans of these kinds are taken off, one after the other."""
+
+    def __init__(self, asked: Asked, kinds: tuple[MissionType, ...]) -> None:
+        super().__init__(asked)
+        self._kinds = kinds
+        self._left = list(kinds)
+
+    def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        return [self.accept(), *self._clear(view, now_ns)]
+
+    def _clear(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        clear = MissionClear(*self.parties(view, self._left[0]), self.asked.timing)
+        return self.begin(clear, view, now_ns)
+
+    def done(
+        self, items: tuple[MissionItemInt, ...], view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        work: list[JobWork] = []
+        if self._left.pop(0) is MissionType.MISSION:
+            work += [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
+        if self._left:
+            return work + self._clear(view, now_ns)
+        text = ", ".join(GONE[kind] for kind in self._kinds)
+        return work + self.end(OutcomeKind.COMPLETE, None, text)
+
+    def file(self, news: FileRead | FileWritten, view: VehicleView, now_ns: int) -> list[JobWork]:
+        return []

@@ -1,0 +1,1 @@
+"""How one vehicle is talked with: commands, discovery, its reports, its texts."""
