@@ -83,7 +83,7 @@ class Case:
 
 
 def limits_of(policy: Policy, own_sysid: int) -> Limits:
-    """Of the policy's fence, as far as its size is known before the vehicle has told where it is."""
+    """Of the policy's fence, as far as its size is known before the vehicle told where it is."""
     about_home = cylinder_of(policy)
     return Limits(about_home.reach_m, about_home.ceiling_up_m, own_sysid)
 
