@@ -23,12 +23,12 @@ from gcs.gate.effects import Effect
 from gcs.gate.inputs import Input
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.edge import Edge
-from gcs.gate.proof.invariants import objections
 from gcs.gate.states import LandedState
 from gcs.session import effects, inputs
 from tests.loopback import pymavlink_decoder
 from tests.loopback.flight import Flight
+from tests.proof.edge import Edge
+from tests.proof.invariants import objections
 
 Vec3 = tuple[float, float, float]
 

@@ -80,9 +80,13 @@ TARGETS: Final = {
         Target(
             name="gate",
             packages=("gcs/gate",),
-            tests=("tests/unit/gate", "tests/unit/session"),
+            tests=(
+                "tests/unit/gate",
+                "tests/unit/session",
+                "tests/unit/vehicle",
+                "tests/unit/station",
+            ),
             skip=(
-                ("gcs/gate/proof/*.py", "a tool of the tests"),
                 ("gcs/gate/machine/rows_*.py", "its values are altered in the table"),
                 ("gcs/gate/machine/cells.py", "its values are altered in the table"),
                 ("gcs/gate/machine/render.py", "prints the table; its test is the golden copy"),
@@ -104,9 +108,9 @@ TARGETS: Final = {
             ),
             nearest=(
                 ("gcs/bridge/setup_policy/names.py", ("tests/unit/test_policy_file.py",)),
-                ("gcs/bridge/guard", ("tests/unit/bridge/guard",)),
+                ("gcs/bridge/setup_policy", ("tests/unit/bridge/setup_policy",)),
                 (
-                    "gcs/bridge/meaning",
+                    "gcs/bridge/translate",
                     (
                         "tests/unit/bridge/test_meaning",
                         "tests/unit/bridge/test_sticks.py",
@@ -116,7 +120,7 @@ TARGETS: Final = {
                     ),
                 ),
                 ("gcs/bridge/plans", ("tests/unit/bridge/test_plan",)),
-                ("gcs/bridge/classes", ("tests/unit/bridge/test_classes.py",)),
+                ("gcs/bridge/catalog", ("tests/unit/bridge/test_catalog.py",)),
             ),
             skip=(
                 ("gcs/bridge/catalog/explain.py", "sentences only"),

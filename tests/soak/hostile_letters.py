@@ -1,7 +1,7 @@
 """A hostile vehicle and a hostile link: the gate is told anything, in any state, for a while.
 
 A state is reached as a flight reaches it; then the letters of the explorer follow, which are all
-that can be told to a gate (`gcs/gate/proof/alphabet.py`), in any order.  Nothing of it is true, so
+that can be told to a gate (`tests/proof/alphabet.py`), in any order.  Nothing of it is true, so
 no promise about the truth holds meanwhile; verdicts, endings and permits are judged as ever.  What
 is rare in a flight is met here often enough to say something about it.
 """
@@ -30,9 +30,9 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.memory import Memory
-from gcs.gate.proof.alphabet import ALPHABET, Letter, Step
-from gcs.gate.proof.world import SPOT, STILL, World
 from gcs.gate.states import State
+from tests.proof.alphabet import ALPHABET, Letter, Step
+from tests.proof.world import SPOT, STILL, World
 from tests.soak.hostile_counts import Seen
 from tests.soak.hostile_run import MS_NS, SECOND_NS, HostileRun
 from tests.soak.point_mass import TO_RETURN_UP_M

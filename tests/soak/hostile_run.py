@@ -50,12 +50,12 @@ from gcs.gate.inputs import (
 from gcs.gate.machine.gate import MOTION
 from gcs.gate.permit import Permit
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.edge import Edge
-from gcs.gate.proof.invariants import objections
 from gcs.gate.requests import (
     Request,
 )
 from gcs.gate.states import Control, FlightMode, State
+from tests.proof.edge import Edge
+from tests.proof.invariants import objections
 from tests.soak.hostile_counts import CountingGate, Seen
 from tests.soak.point_mass import STEP_NS, STILL, TO_RETURN_UP_M, PointMass
 

@@ -1,4 +1,4 @@
-"""The part of docs/bridge.md that is made of the tables of `gcs/bridge/meaning`.
+"""The part of docs/bridge.md that is made of the tables of `gcs/bridge/translate`.
 
 Run: python -m tests.unit.bridge.meaning_page, which writes it anew.
 """
@@ -19,8 +19,8 @@ from gcs.wire.ids import Cmd
 from tests.unit.bridge.vehicles import flying
 
 PAGE = Path(__file__).parents[3] / "docs" / "bridge.md"
-BEGIN = "<!-- from gcs/bridge/meaning: begin -->\n"
-END = "<!-- from gcs/bridge/meaning: end -->\n"
+BEGIN = "<!-- from gcs/bridge/translate: begin -->\n"
+END = "<!-- from gcs/bridge/translate: end -->\n"
 
 
 def tables() -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from msgspec.structs import replace
 
-from gcs.gate.proof.world import YARD, world
+from tests.proof.world import YARD, world
 
 PX4 = world(YARD, "px4", return_up_m=10.0, climb_ends_within_m=0.8)
 ARDUPILOT = world(

@@ -22,17 +22,17 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.rules import Branch
 from gcs.gate.machine.table import TABLE
 from gcs.gate.machine.turn import Turn
-from gcs.gate.proof.alphabet import ALPHABET
-from gcs.gate.proof.edge import Objection
-from gcs.gate.proof.explorer import Explorer
-from gcs.gate.proof.invariants import objections
-from gcs.gate.proof.situation import FINER
-from gcs.gate.proof.taking import take
-from gcs.gate.proof.unexplored_memories import LeftOut
-from gcs.gate.proof.walk import Begun, Explored, Walk
-from gcs.gate.proof.world import CONDITIONS, World
 from gcs.gate.refusal import Code
 from gcs.gate.states import Control, State
+from tests.proof.alphabet import ALPHABET
+from tests.proof.edge import Objection
+from tests.proof.explorer import Explorer
+from tests.proof.invariants import objections
+from tests.proof.situation import FINER
+from tests.proof.taking import take
+from tests.proof.unexplored_memories import LeftOut
+from tests.proof.walk import Begun, Explored, Walk
+from tests.proof.world import CONDITIONS, World
 from tests.soaking import SOAKING, Counted
 from tests.unit.gate.explored import WORLDS
 from tests.unit.gate.planted import FAULTS, Planted

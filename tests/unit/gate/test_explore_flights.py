@@ -12,10 +12,10 @@ from typing import Final
 import pytest
 
 from gcs.gate.machine.table import TABLE
-from gcs.gate.proof.explorer import Explorer
-from gcs.gate.proof.vector import Vector
-from gcs.gate.proof.walk import Begun, Walk
 from gcs.gate.states import State
+from tests.proof.explorer import Explorer
+from tests.proof.vector import Vector
+from tests.proof.walk import Begun, Walk
 from tests.unit.gate.explored import WORLDS
 from tests.unit.gate.planted import FAULTS, Planted
 

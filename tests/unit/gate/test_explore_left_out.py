@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from gcs.gate.machine.table import TABLE, Table
-from gcs.gate.proof.explorer import Explorer
-from gcs.gate.proof.situation import USUAL, parts
-from gcs.gate.proof.unexplored_memories import LeftOut
-from gcs.gate.proof.walk import Begun, Explored, Judge, Walk
+from tests.proof.explorer import Explorer
+from tests.proof.situation import USUAL, parts
+from tests.proof.unexplored_memories import LeftOut
+from tests.proof.walk import Begun, Explored, Judge, Walk
 from tests.unit.gate.explored import WORLDS
 from tests.unit.gate.planted import FAULTS
 

@@ -36,12 +36,12 @@ from gcs.gate.machine.rules import Branch, Reply
 from gcs.gate.machine.table import TABLE, Table
 from gcs.gate.permit import Permit
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.alphabet import ALPHABET, TICK_NS
-from gcs.gate.proof.edge import Edge
-from gcs.gate.proof.invariants import objections
-from gcs.gate.proof.world import YARD, World
 from gcs.gate.requests import GoTo, Resume, TakeControl
 from gcs.gate.states import Control, FlightMode, LandedState, State
+from tests.proof.alphabet import ALPHABET, TICK_NS
+from tests.proof.edge import Edge
+from tests.proof.invariants import objections
+from tests.proof.world import YARD, World
 from tests.shares import examples
 
 HOME = (0.0, 0.0, 0.0)

@@ -8,11 +8,11 @@ from dataclasses import replace
 from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged, PositionSeen, Requested, Tick
 from gcs.gate.machine.memory import SECOND_NS
-from gcs.gate.proof.edge import Edge
-from gcs.gate.proof.invariants import objections
-from gcs.gate.proof.world import DASH, EDGE, SPOT, STILL
 from gcs.gate.requests import Abort
 from gcs.gate.states import State
+from tests.proof.edge import Edge
+from tests.proof.invariants import objections
+from tests.proof.world import DASH, EDGE, SPOT, STILL
 from tests.unit.gate.test_invariants import Run
 
 

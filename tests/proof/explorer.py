@@ -32,19 +32,19 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.table import TABLE, Table
-from gcs.gate.proof.alphabet import ALPHABET, Letter, becomes_known
-from gcs.gate.proof.decision_tree import DecisionTree
-from gcs.gate.proof.edge import Objection, severity_of
-from gcs.gate.proof.invariants import objections_to_memory
-from gcs.gate.proof.letters import Letters
-from gcs.gate.proof.outcome import Outcome
-from gcs.gate.proof.questions import Instant, Questions, WatchedMemory
-from gcs.gate.proof.situation import USUAL, Part, ToldApart, parts
-from gcs.gate.proof.taking import take
-from gcs.gate.proof.vector import NOW, Codes, Vector
-from gcs.gate.proof.walk import Begun, Combination, Explored, Judge, Walk
-from gcs.gate.proof.world import World
 from gcs.gate.states import State
+from tests.proof.alphabet import ALPHABET, Letter, becomes_known
+from tests.proof.decision_tree import DecisionTree
+from tests.proof.edge import Objection, severity_of
+from tests.proof.invariants import objections_to_memory
+from tests.proof.letters import Letters
+from tests.proof.outcome import Outcome
+from tests.proof.questions import Instant, Questions, WatchedMemory
+from tests.proof.situation import USUAL, Part, ToldApart, parts
+from tests.proof.taking import take
+from tests.proof.vector import NOW, Codes, Vector
+from tests.proof.walk import Begun, Combination, Explored, Judge, Walk
+from tests.proof.world import World
 
 T = TypeVar("T")
 

@@ -19,13 +19,13 @@ import numpy as np
 
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.machine.events import Event
-from gcs.gate.proof.columns import Columns, Growing, Numbers, columns_of, vector_at
-from gcs.gate.proof.decision_tree import DecisionTree
-from gcs.gate.proof.edge import Objection
-from gcs.gate.proof.letters import Cells, Letters
-from gcs.gate.proof.outcome import CHANGES, Outcome
-from gcs.gate.proof.vector import PLACE, Codes, Vector
 from gcs.gate.states import Control, State
+from tests.proof.columns import Columns, Growing, Numbers, columns_of, vector_at
+from tests.proof.decision_tree import DecisionTree
+from tests.proof.edge import Objection
+from tests.proof.letters import Cells, Letters
+from tests.proof.outcome import CHANGES, Outcome
+from tests.proof.vector import PLACE, Codes, Vector
 
 Combination: TypeAlias = tuple[State, Severity, Control, Condition | None]
 

@@ -8,7 +8,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from gcs.gate.proof.vector import PLACE, Vector
+from tests.proof.vector import PLACE, Vector
 
 Columns: TypeAlias = npt.NDArray[np.int64]
 """`columns[place][number]` is what stands at `place` of the vector with that number."""

@@ -8,13 +8,13 @@ from functools import partial
 from typing import Final, TypeAlias, cast
 
 from gcs.gate.machine.memory import Task
-from gcs.gate.proof.columns import NEVER, Columns, Numbers
-from gcs.gate.proof.decision_tree import DecisionTree
-from gcs.gate.proof.edge import Edge, Objection
-from gcs.gate.proof.invariants import objections, objections_to_step
-from gcs.gate.proof.questions import VALUE, Instant, Questions, WatchedMemory
-from gcs.gate.proof.taking import Taken
-from gcs.gate.proof.vector import NOW, PLACE, TIMES, Vector, task_values
+from tests.proof.columns import NEVER, Columns, Numbers
+from tests.proof.decision_tree import DecisionTree
+from tests.proof.edge import Edge, Objection
+from tests.proof.invariants import objections, objections_to_step
+from tests.proof.questions import VALUE, Instant, Questions, WatchedMemory
+from tests.proof.taking import Taken
+from tests.proof.vector import NOW, PLACE, TIMES, Vector, task_values
 
 Move: TypeAlias = tuple[int, int | None, int]
 """`(place, from, plus_ns)`: the time at `place` becomes that at `from`, and `plus_ns` later."""

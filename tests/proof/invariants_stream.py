@@ -14,9 +14,9 @@ from gcs.gate.effects import SendSetpoint, StreamVerdict, Transition
 from gcs.gate.inputs import StreamSeen, Tick
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.permit import Permit
-from gcs.gate.proof.edge import Edge, same
 from gcs.gate.refusal import Refusal
 from gcs.gate.states import Control, State
+from tests.proof.edge import Edge, same
 
 EXACT_M: Final = 1e-6
 DEADMAN_NS: Final = SECOND_NS // 2

@@ -9,7 +9,6 @@ from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Outcome, Ruling, Transition, Verdict
 from gcs.gate.inputs import Requested
 from gcs.gate.machine.memory import Memory
-from gcs.gate.proof.edge import Edge, same
 from gcs.gate.refusal import Code
 from gcs.gate.requests import (
     Abort,
@@ -29,6 +28,7 @@ from gcs.gate.requests import (
     TakePhoto,
 )
 from gcs.gate.states import Control, FlightMode, State
+from tests.proof.edge import Edge, same
 
 FLIES: Final = (GoTo, TakeControl, Resume, TakeOff, StartMission, BeginStream)
 MOVES: Final = (*FLIES, Arm, TakePhoto)

@@ -13,11 +13,11 @@ from gcs.gate.effects import CommandKind, Outcome, OutcomeKind, Transition
 from gcs.gate.inputs import HomeSeen, MissionLoaded, PositionSeen, Tick, VerifierChanged
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.edge import Edge, severity_of
-from gcs.gate.proof.invariants_stream import EXACT_M, is_sample, on_the_way
 from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo, TakeOff
 from gcs.gate.states import Control, FlightMode, LandedState, State
+from tests.proof.edge import Edge, severity_of
+from tests.proof.invariants_stream import EXACT_M, is_sample, on_the_way
 
 STREAMING_STATES: Final = frozenset(
     {

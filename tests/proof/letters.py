@@ -8,11 +8,11 @@ from typing import TypeAlias
 import numpy as np
 
 from gcs.gate.machine.events import Event
-from gcs.gate.proof.columns import Columns, Numbers
-from gcs.gate.proof.decision_tree import DecisionTree
-from gcs.gate.proof.outcome import Outcome
-from gcs.gate.proof.vector import Vector
 from gcs.gate.states import State
+from tests.proof.columns import Columns, Numbers
+from tests.proof.decision_tree import DecisionTree
+from tests.proof.outcome import Outcome
+from tests.proof.vector import Vector
 
 Cells: TypeAlias = set[tuple[State, Event]]
 Trees: TypeAlias = Mapping[str, DecisionTree[Outcome]]

@@ -14,9 +14,9 @@ from typing import Any, Final, Generic, TypeAlias, TypeVar, cast
 
 import numpy as np
 
-from gcs.gate.proof.columns import NEVER, Columns, Numbers, vector_at
-from gcs.gate.proof.questions import KNOWN, VALUE, Question, Questions
-from gcs.gate.proof.vector import NOW, Vector
+from tests.proof.columns import NEVER, Columns, Numbers, vector_at
+from tests.proof.questions import KNOWN, VALUE, Question, Questions
+from tests.proof.vector import NOW, Vector
 
 T = TypeVar("T")
 

@@ -9,9 +9,9 @@ from gcs.gate.effects import CommandKind, Say, SendCommand, Transition
 from gcs.gate.inputs import CommandEnded, HeartbeatSeen, LandedSeen, Tick
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.edge import Edge, same
 from gcs.gate.requests import Abort, Disarm, Hold
 from gcs.gate.states import Control, FlightMode, LandedState, State
+from tests.proof.edge import Edge, same
 
 RISKY: Final = frozenset({CommandKind.ARM, CommandKind.TAKE_OFF})
 """Commands whose late effect is dangerous."""

@@ -60,7 +60,7 @@ def all_kinds() -> str:
 
 
 def test_no_entry_changes_its_kind_unseen() -> None:
-    """The file is read by people when it changes; `python -m tests.unit.bridge.test_classes` writes
+    """The file is read by people when it changes; `python -m tests.unit.bridge.test_catalog` writes
     it anew."""
     assert all_kinds() == GOLDEN.read_text(encoding="utf-8")
 

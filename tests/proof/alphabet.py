@@ -37,25 +37,6 @@ from gcs.gate.inputs import (
     VerifierChanged,
 )
 from gcs.gate.machine.memory import SECOND_NS, Memory
-from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
-from gcs.gate.proof.world import (
-    ABOVE,
-    CONDITIONS,
-    DASH,
-    EDGE,
-    ELSEWHERE,
-    GOAL,
-    HOME,
-    LOW,
-    NOWHERE,
-    OUTSIDE,
-    RUSH,
-    SPOT,
-    STILL,
-    STROLL,
-    TOP,
-    World,
-)
 from gcs.gate.requests import (
     Abort,
     Arm,
@@ -76,6 +57,25 @@ from gcs.gate.requests import (
     TakePhoto,
 )
 from gcs.gate.states import FlightMode, LandedState, State
+from tests.proof.invariants_command import FORCE_WINDOW_NS
+from tests.proof.world import (
+    ABOVE,
+    CONDITIONS,
+    DASH,
+    EDGE,
+    ELSEWHERE,
+    GOAL,
+    HOME,
+    LOW,
+    NOWHERE,
+    OUTSIDE,
+    RUSH,
+    SPOT,
+    STILL,
+    STROLL,
+    TOP,
+    World,
+)
 
 TICK_NS: Final = SECOND_NS // 20
 TASK_ID: Final = 1

@@ -22,9 +22,9 @@ from gcs.gate.effects import CommandKind
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.invariants_command import FORCE_WINDOW_NS
-from gcs.gate.proof.world import ABOVE, EDGE, LOW, TOP
 from gcs.gate.states import FlightMode, LandedState, State
+from tests.proof.invariants_command import FORCE_WINDOW_NS
+from tests.proof.world import ABOVE, EDGE, LOW, TOP
 
 _MODES: Final = {
     State.GROUNDED: frozenset({FlightMode.RETURN, FlightMode.LAND, FlightMode.MISSION}),

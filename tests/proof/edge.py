@@ -10,9 +10,9 @@ from gcs.gate.effects import CommandKind, Effect, Ruling, SendCommand, SendSetpo
 from gcs.gate.inputs import Input, PositionSeen, Requested
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof.questions import WatchedMemory
 from gcs.gate.requests import Request
 from gcs.gate.states import LandedState, State
+from tests.proof.questions import WatchedMemory
 
 
 @dataclass(frozen=True, slots=True)

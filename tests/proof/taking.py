@@ -13,10 +13,10 @@ from gcs.gate.machine.gate import Gate, ImpossibleError
 from gcs.gate.machine.memory import GATE, Memory
 from gcs.gate.machine.rules import Cell
 from gcs.gate.machine.table import Table
-from gcs.gate.proof.alphabet import LATE_ID, OTHER, OWNER, PENDING_ID, TASK_ID, Letter
-from gcs.gate.proof.edge import Edge, same
-from gcs.gate.proof.world import World
 from gcs.gate.states import State
+from tests.proof.alphabet import LATE_ID, OTHER, OWNER, PENDING_ID, TASK_ID, Letter
+from tests.proof.edge import Edge, same
+from tests.proof.world import World
 
 
 class NotedTable(Mapping[tuple[State, Event], Cell]):

@@ -33,13 +33,13 @@ from gcs.gate.inputs import (
 )
 from gcs.gate.machine.memory import Memory
 from gcs.gate.policy.policy import Policy
-from gcs.gate.proof import (
+from tests.proof import (
     invariants_command,
     invariants_motion,
     invariants_request,
     invariants_stream,
 )
-from gcs.gate.proof.edge import Edge, Objection
+from tests.proof.edge import Edge, Objection
 
 
 @dataclass(frozen=True, slots=True)

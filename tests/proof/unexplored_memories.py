@@ -13,9 +13,9 @@ from typing import Final, cast
 
 import numpy as np
 
-from gcs.gate.proof.columns import Columns, Numbers
-from gcs.gate.proof.letters import Letters
-from gcs.gate.proof.walk import Begun, Judge, Walk
+from tests.proof.columns import Columns, Numbers
+from tests.proof.letters import Letters
+from tests.proof.walk import Begun, Judge, Walk
 
 BATCH: Final = 8_192
 """The situations of so many memories at once."""

@@ -15,7 +15,7 @@ import math
 from typing import TypeAlias
 
 from gcs.gate.machine.memory import Memory, Task
-from gcs.gate.proof.vector import FIELDS, NEVER_NONE, PLACE, TIMES, Codes, Vector
+from tests.proof.vector import FIELDS, NEVER_NONE, PLACE, TIMES, Codes, Vector
 
 Question: TypeAlias = tuple[int, int, int]
 """`(place, VALUE, 0)`: which code is there?  `(place, KNOWN, 0)`: is there a time?
