@@ -39,8 +39,7 @@ def _explained(name: str, policy: str) -> str:
     """
     from gcs.bridge.catalog.explain import explain, explanation
     from gcs.bridge.setup_policy.explain import parameter_explanation, policy_explanation
-    from gcs.bridge.translate.explain import meaning_explanation
-    from gcs.bridge.translate.explain_modes import mode_explanation
+    from gcs.bridge.translate.explain import meaning_explanation, mode_explanation
     from gcs.exit_codes import ExitCode
     from gcs.operator.errors import ExitError
     from gcs.policy_file import PolicyFileError, load_policy

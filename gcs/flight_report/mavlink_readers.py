@@ -1,12 +1,18 @@
-"""MAVLink messages -> facts: one reader for each message that a report uses."""
+"""MAVLink messages -> facts: one reader for each message that a report uses.
+
+A reader takes named fields straight from the bytes.  A recorded message is a frame header, then the
+payload in wire order, zero-extended (`gcs/record/ros1.py`), so a field lies at the offset that the
+dialect gives it.
+"""
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable, Mapping
+from functools import cache
 from math import isfinite
 from typing import TypeAlias
 
-from gcs.flight_report import payload
 from gcs.flight_report.facts import (
     Battery,
     Cells,
@@ -18,7 +24,16 @@ from gcs.flight_report.facts import (
     Vibration,
 )
 from gcs.protocol.autopilot import autopilot_of, type_name
+from gcs.record.ros1 import FRAME_BYTES
+from gcs.wire.dialect import MESSAGES, TYPE_CODES, FieldDef, MessageDef
 from gcs.wire.ids import MavAutopilot, MavType
+from gcs.wire.text import clean
+
+Number: TypeAlias = "int | float"
+ReadNumbers: TypeAlias = Callable[[bytes], tuple[Number, ...]]
+"""The fields of a recorded message; an array gives as many numbers as it has elements.
+
+Raises struct.error where the message is too short for them."""
 
 Read: TypeAlias = Callable[[bytes], "list[Fact]"]
 
@@ -28,8 +43,47 @@ _NOT_VEHICLES = frozenset(
 )
 
 
+@cache
+def _by_name() -> dict[str, MessageDef]:
+    return {definition.name: definition for definition in MESSAGES.values()}
+
+
+def _field(message: str, name: str) -> FieldDef:
+    return next(field for field in _by_name()[message].fields if field.name == name)
+
+
+@cache
+def numbers(message: str, *names: str) -> ReadNumbers:
+    """Reads these fields of that message, in this order.  Raises KeyError, StopIteration."""
+    fields = [_field(message, name) for name in names]
+    parts = [
+        (
+            struct.Struct(f"<{field.array_length or 1}{TYPE_CODES[field.type]}").unpack_from,
+            FRAME_BYTES + field.offset,
+        )
+        for field in fields
+    ]
+
+    def read(data: bytes) -> tuple[Number, ...]:
+        found: list[Number] = []
+        for unpack, offset in parts:
+            found += unpack(data, offset)
+        return tuple(found)
+
+    return read
+
+
+def text(message: str, name: str, data: bytes) -> str:
+    """A `char` array, up to its first NUL; what is no UTF-8, or a control, becomes replacement
+    characters."""
+    field = _field(message, name)
+    start = FRAME_BYTES + field.offset
+    raw = data[start : start + field.size]
+    return clean(raw.partition(b"\0")[0].decode("utf-8", "replace"))
+
+
 def _heartbeat() -> Read:
-    read = payload.numbers("HEARTBEAT", "autopilot", "type")
+    read = numbers("HEARTBEAT", "autopilot", "type")
 
     def facts(data: bytes) -> list[Fact]:
         autopilot, kind = (int(value) for value in read(data))
@@ -41,7 +95,7 @@ def _heartbeat() -> Read:
 
 
 def _sys_status() -> Read:
-    read = payload.numbers("SYS_STATUS", "voltage_battery", "current_battery", "battery_remaining")
+    read = numbers("SYS_STATUS", "voltage_battery", "current_battery", "battery_remaining")
 
     def facts(data: bytes) -> list[Fact]:
         millivolts, centiamperes, percent = read(data)
@@ -57,7 +111,7 @@ def _sys_status() -> Read:
 
 
 def _battery_status() -> Read:
-    read = payload.numbers("BATTERY_STATUS", "id", "voltages")
+    read = numbers("BATTERY_STATUS", "id", "voltages")
 
     def facts(data: bytes) -> list[Fact]:
         battery, *millivolts = read(data)
@@ -69,7 +123,7 @@ def _battery_status() -> Read:
 
 
 def _vibration() -> Read:
-    read = payload.numbers(
+    read = numbers(
         "VIBRATION",
         *("vibration_x", "vibration_y", "vibration_z", "clipping_0", "clipping_1", "clipping_2"),
     )
@@ -82,7 +136,7 @@ def _vibration() -> Read:
 
 
 def _gps_raw() -> Read:
-    read = payload.numbers("GPS_RAW_INT", "fix_type", "satellites_visible", "eph", "h_acc")
+    read = numbers("GPS_RAW_INT", "fix_type", "satellites_visible", "eph", "h_acc")
 
     def facts(data: bytes) -> list[Fact]:
         fix_type, satellites, eph, h_acc_mm = read(data)
@@ -100,7 +154,7 @@ def _gps_raw() -> Read:
 
 def _ratios(autopilot: str, message: str, *names: str) -> Callable[[], Read]:
     def make() -> Read:
-        read = payload.numbers(message, *names)
+        read = numbers(message, *names)
 
         def facts(data: bytes) -> list[Fact]:
             ratios = (value if isfinite(value) else None for value in read(data))
@@ -113,12 +167,12 @@ def _ratios(autopilot: str, message: str, *names: str) -> Callable[[], Read]:
 
 def _statustext() -> Read:
     """Joins the chunks of a long text, which come in order and carry the text's `id`."""
-    read = payload.numbers("STATUSTEXT", "severity", "id", "chunk_seq")
+    read = numbers("STATUSTEXT", "severity", "id", "chunk_seq")
     begun: dict[int, str] = {}
 
     def facts(data: bytes) -> list[Fact]:
         severity, number, chunk = (int(value) for value in read(data))
-        part = payload.text("STATUSTEXT", "text", data)
+        part = text("STATUSTEXT", "text", data)
         if number == 0:
             return [Text(severity, part.strip())]
         whole = (begun.pop(number, "") if chunk else "") + part

@@ -1,4 +1,4 @@
-"""One pass over a record: its messages become what the flight was.
+"""One pass over a recorded flight of any format: its messages become what the flight was.
 
 Nothing is kept a message: series are reduced while they come in, lists have a limit, so the memory
 does not grow with the length of the record.
@@ -7,20 +7,20 @@ does not grow with the length of the record.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Protocol
 
 import msgspec
 from mcap.records import Attachment, Channel, Metadata, Schema
 
 from gcs.flight_report.facts import Decision, Fact, Identity, LogLine, Text
 from gcs.flight_report.flight import Fence, Flight, VehicleFlight
-from gcs.flight_report.opening import open_flight
 from gcs.flight_report.topics import UNREADABLE, Source, source_of
 from gcs.flight_report.vehicle_scan import VehicleScan
 from gcs.gate.policy.parse import DEFAULT
 from gcs.record import ros1
-from gcs.record.reading import Condition, Message
+from gcs.record.reading import Condition, Message, Reading, Record
 from gcs.report import Direction, FenceShape
 
 _FENCE = "/gate/fence"
@@ -186,3 +186,22 @@ def _was_received(data: bytes) -> bool:
 
 def _number(value: object, default: float) -> float:
     return float(value) if isinstance(value, int | float) else default
+
+
+class FlightRecords(Protocol):
+    """The records of a flight in file order; `condition` is whole once they have been read."""
+
+    path: Path
+    condition: Condition
+
+    def __iter__(self) -> Iterator[Record]: ...
+
+
+def open_flight(path: Path) -> FlightRecords:
+    """The records of a recorded flight.
+
+    Iterating raises BadRecordError for what cannot be read.  Raises OSError.
+    """
+    from gcs.logfile.as_record import LogReading, is_other_log
+
+    return LogReading(path) if is_other_log(path) else Reading(path)

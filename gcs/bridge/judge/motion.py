@@ -1,10 +1,11 @@
-"""What would move the vehicle becomes a request to the gate in an operator's words (`meaning/`)."""
+"""What would move the vehicle becomes a request to the gate, in operators' words and frame."""
 
 from __future__ import annotations
 
 import math
 from typing import Final
 
+from gcs import ipc
 from gcs.bridge.catalog import Row
 from gcs.bridge.effects import BridgeEffect, ToVehicle
 from gcs.bridge.judge.climbs import HEIGHT_WRITTEN, asks_for_height, climbs
@@ -13,8 +14,9 @@ from gcs.bridge.judge.set_up import SetUpJudge
 from gcs.bridge.judge.target_component import is_for_another, only_autopilot
 from gcs.bridge.mission_mode import MissionMode
 from gcs.bridge.translate.meaning import Forward, Reject, Sample, Seen, Settled, Sticks, Words
-from gcs.bridge.translate.samples import stream_of
 from gcs.bridge.translate.translate import meaning_of
+from gcs.frames import Vec3, enu_from_ned
+from gcs.gate.attitude import roll_pitch_yaw
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.wire.ids import Cmd, ModeFlag
@@ -115,3 +117,35 @@ def _arms_too(message: Message) -> bool:
     if not isinstance(message, CommandLong | CommandInt) or message.command != Cmd.DO_SET_MODE:
         return False
     return math.isfinite(message.param1) and bool(int(message.param1) & ModeFlag.SAFETY_ARMED)
+
+
+def stream_of(sample: Sample) -> ipc.Stream:
+    """The same in east, north, up and degrees."""
+    if sample.attitude is not None:
+        roll, pitch, yaw = map(math.degrees, roll_pitch_yaw(sample.attitude.q_ned_from_frd))
+        return ipc.Stream(
+            roll_deg=roll,
+            pitch_deg=pitch,
+            yaw_deg=yaw,
+            yaw_rate_deg_s=_degrees(sample.yaw_rate_rad_s),
+            thrust=sample.attitude.thrust,
+        )
+    return ipc.Stream(
+        pos_enu=_enu(sample.pos_ned),
+        v_enu=_enu(sample.v_ned),
+        a_enu=_enu(sample.a_ned),
+        yaw_deg=_degrees(sample.yaw_rad),
+        yaw_rate_deg_s=_degrees(sample.yaw_rate_rad_s),
+    )
+
+
+def _enu(triple_ned: Vec3 | None) -> ipc.Maybe3 | None:
+    """East, north, up; an axis that was left out (NaN) is None."""
+    if triple_ned is None:
+        return None
+    east, north, up = (None if math.isnan(x) else x for x in enu_from_ned(triple_ned))
+    return (east, north, up)
+
+
+def _degrees(angle_rad: float | None) -> float | None:
+    return None if angle_rad is None else math.degrees(angle_rad)

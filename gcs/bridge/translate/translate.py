@@ -3,10 +3,15 @@
 Pure: the message and what is known of the vehicle decide, nothing is remembered.  Whether one may
 ask for it, and whether it may be flown, is not decided here: a request goes to the gate, which
 judges it as any operator's.  `target_system` and `target_component` are the bridge's to route by.
+
+A MISSION_ITEM or MISSION_ITEM_INT that is no part of a plan is translated here: `current` 2 is a
+go-to, 3 a height.  These are ArduPilot's (`GCS_Common.cpp`, `mode_auto.cpp`): MAVProxy's `guided`,
+DroneKit's `simple_goto`, and QGroundControl's go-to of older versions.  PX4 knows neither.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, TypeVar
@@ -14,17 +19,49 @@ from typing import Final, TypeVar
 from gcs.bridge.translate.attitudes import attitude_target
 from gcs.bridge.translate.command import command_of
 from gcs.bridge.translate.commands import meaning_of_command
-from gcs.bridge.translate.guided_items import guided_item
-from gcs.bridge.translate.meaning import Meaning, Seen
+from gcs.bridge.translate.meaning import Meaning, Reject, Seen
 from gcs.bridge.translate.mission_commands import mission_set_current
 from gcs.bridge.translate.modes import set_mode
-from gcs.bridge.translate.says import refuse, unsupported
+from gcs.bridge.translate.places import DEGREES_PER_UNIT, datum_of, place_of
+from gcs.bridge.translate.says import go_to, refuse, unsupported
 from gcs.bridge.translate.sticks import manual_control, rc_override
 from gcs.bridge.translate.targets import global_target, local_target
-from gcs.gate.refusal import Code
+from gcs.gate.refusal import Code, Refusal
 from gcs.wire import messages as m
+from gcs.wire.ids import Cmd
+from gcs.wire.messages import MissionItem, MissionItemInt
 
 M = TypeVar("M", bound=m.Message)
+
+GO_TO: Final = 2
+CHANGE_HEIGHT: Final = 3
+
+
+def guided_item(message: MissionItem | MissionItemInt, seen: Seen) -> Meaning:
+    """A go-to there, or to another height where it is or flies to."""
+    if message.current not in (GO_TO, CHANGE_HEIGHT):
+        return refuse(Code.BAD_MISSION, "a mission item that belongs to no upload")
+    if seen.autopilot.mode_in_two_parts:
+        return unsupported("px4 takes no single mission item: use DO_REPOSITION")
+    if message.command != Cmd.NAV_WAYPOINT:
+        return unsupported(
+            f"command {message.command} as a single item: only NAV_WAYPOINT is flown"
+        )
+    datum = datum_of(message.frame)
+    if isinstance(datum, Refusal):
+        return Reject(datum)
+    unit = DEGREES_PER_UNIT if isinstance(message, MissionItemInt) else 1.0
+    lat_deg, lon_deg = message.x * unit, message.y * unit
+    if message.current == CHANGE_HEIGHT:
+        lat_deg = lon_deg = math.nan
+    elif math.isnan(lat_deg) or math.isnan(lon_deg) or math.isnan(message.z):
+        return refuse(Code.NON_FINITE, "a go-to with a coordinate that is no number")
+    place_ned = place_of(seen, lat_deg, lon_deg, message.z, datum)
+    if isinstance(place_ned, Refusal):
+        return Reject(place_ned)
+    if message.current == CHANGE_HEIGHT and seen.goal_ned is not None:
+        place_ned = (seen.goal_ned[0], seen.goal_ned[1], place_ned[2])
+    return go_to(seen, place_ned, None)
 
 
 @dataclass(frozen=True, slots=True)

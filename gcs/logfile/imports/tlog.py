@@ -2,7 +2,8 @@
 
 `gcs/logfile/exports/tlog.py` makes the same bytes of it again.  For that the record keeps, beside
 log times that rise strictly, what stood in the file: a message's publish_time is its time stamp in
-microseconds times 1000; one that is no multiple of 1000 says that there was none.
+microseconds times 1000; one that is no multiple of 1000 says that there was none.  The time stamps
+of a file that is damaged may be so too: log times are those that can be believed.
 """
 
 from __future__ import annotations
@@ -11,13 +12,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 
-from gcs.logfile.batch_writer import BatchWriter, Loose, Rows, Times
+from gcs.logfile.batch_writer import BatchWriter, Loose, Rows, Times, strictly_increasing
 from gcs.logfile.frames import Mask, Small
 from gcs.logfile.imports.frame_rows import FrameRows
 from gcs.logfile.imports.result import METADATA, Imported
 from gcs.logfile.imports.telemetry import Telemetry
-from gcs.logfile.imports.times import LAST_US, log_times
 from gcs.logfile.tlog import STAMP_BYTES, Gap, Window, read_windows
 from gcs.record import ros1
 from gcs.record.derived import Derived
@@ -26,6 +28,13 @@ from gcs.wire.frame import why_not
 
 TICK_NS = 500_000_000
 """How often the derived topics are asked for what is due by the clock."""
+
+JUMP_US = 3_600_000_000
+"""A time stamp that is further from those around it is damaged."""
+LAST_US = 2**63 // 1000
+"""Nanoseconds since 1970 in 63 bits end here."""
+
+_AROUND = 5
 
 
 def import_tlog(
@@ -125,3 +134,27 @@ def _what_can_be_kept(window: Window) -> tuple[list[Gap], Mask]:
     starts = window.frames.start[window.stamped & ~fits].tolist()
     more = [Gap(start - STAMP_BYTES, start) for start in starts]
     return sorted([*window.gaps, *more]), fits
+
+
+def log_times(time_us: NDArray[np.uint64], known: Mask, last_ns: int) -> Times:
+    """Nanoseconds, strictly increasing and later than `last_ns`.
+
+    What is not `known` gets the time of the one before it.  A time stamp that is `JUMP_US` away
+    from the median of five around it is not believed; a clock that was set is.
+    """
+    at_us = np.minimum(time_us, np.uint64(LAST_US)).astype(np.int64)
+    known = known & (time_us < LAST_US)
+    if known.any():
+        known[known] = _believed(at_us[known])
+    source = np.maximum.accumulate(np.where(known, np.arange(len(at_us)), -1))
+    filled_ns = np.where(source >= 0, at_us[source] * 1000, last_ns)
+    return strictly_increasing(filled_ns, last_ns)
+
+
+def _believed(at_us: NDArray[np.int64]) -> Mask:
+    steps = np.diff(at_us)
+    if not len(steps) or (abs(steps) < JUMP_US).all():
+        return np.ones(len(at_us), np.bool_)
+    around = sliding_window_view(np.pad(at_us, _AROUND // 2, mode="reflect"), _AROUND)
+    believed: Mask = abs(at_us - np.median(around, axis=1)) < JUMP_US
+    return believed

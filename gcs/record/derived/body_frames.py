@@ -3,41 +3,51 @@
 Frames: `map` (ENU) -> `local_ned` static, `local_ned` -> `base_link_frd` dynamic with MAVLink's
 values unchanged, `base_link_frd` -> `base_link` static.  A second vehicle's body frames carry
 its number.  The transforms of each vehicle have a topic of their own, because after a seek a
-viewer reads only the last message of a topic.
+viewer reads only the last message of a topic.  Quaternions are (w, x, y, z).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import isfinite
+from math import cos, isfinite, pi, sin, sqrt
 from typing import ClassVar
 
 from foxglove.messages import (
+    CubePrimitive,
+    CylinderPrimitive,
     FrameTransform,
     FrameTransforms,
     Odometry,
     Pose,
     Quaternion,
+    SceneEntity,
     SceneUpdate,
+    Timestamp,
     Vector3,
 )
 
-from gcs.frames import enu_from_ned
+from gcs.frames import Vec3, enu_from_ned
 from gcs.record.backend import Channel
+from gcs.record.derived.drawing import NO_TURN, color
 from gcs.record.derived.foxglove_channel import channel, stamp
-from gcs.record.derived.model import quadrotor
-from gcs.record.derived.rotation import (
-    FLU_IN_FRD,
-    NED_IN_MAP,
-    conjugate,
-    map_from_flu,
-    turned,
-)
 from gcs.record.topics import Deriver, Grid, Out
 from gcs.report import FsaItem, GeodeticItem, PoseItem, Quat, RecordItem, SetpointItem
 
 TF_HZ = 25.0
 ODOMETRY_HZ = 5.0
+
+NED_IN_MAP: Quat = (0.0, sqrt(0.5), sqrt(0.5), 0.0)
+"""Swaps x and y and turns z round: a half turn about the diagonal of north and east."""
+
+FLU_IN_FRD: Quat = (0.0, 1.0, 0.0, 0.0)
+"""A half turn about the forward axis."""
+
+ARM_M = 0.45
+"""Centre to motor: larger than life, so that it is seen from a hundred metres."""
+
+_DARK = color((0.12, 0.13, 0.16))
+_FRONT = color((1.0, 0.45, 0.1), 0.9)
+_REAR = color((0.85, 0.87, 0.9), 0.9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,3 +186,79 @@ def _odometry(names: BodyNames, item: PoseItem, now_ns: int) -> Odometry:
 def _quaternion(q: Quat) -> Quaternion:
     w, x, y, z = q
     return Quaternion(x=x, y=y, z=z, w=w)
+
+
+# ------------------------------------------------------------------------------------- turns
+
+
+def product(a: Quat, b: Quat) -> Quat:
+    """First `b`, then `a` (Hamilton's product)."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+def conjugate(q: Quat) -> Quat:
+    """The turn back."""
+    w, x, y, z = q
+    return (w, -x, -y, -z)
+
+
+def turned(q: Quat, v: Vec3) -> Vec3:
+    """`v` rotated by `q`."""
+    _, x, y, z = product(product(q, (0.0, *v)), conjugate(q))
+    return (x, y, z)
+
+
+def map_from_flu(q_ned_from_frd: Quat) -> Quat:
+    """The attitude as a pose in `map` (ENU) of a body with x forward, y left, z up."""
+    return product(product(NED_IN_MAP, q_ned_from_frd), FLU_IN_FRD)
+
+
+# --------------------------------------------------------------------------------- the model
+
+
+def quadrotor(stamp: Timestamp, frame_id: str, name: str) -> SceneUpdate:
+    """A quadrotor in X, forward = x, up = z of `frame_id`; the front propellers are orange."""
+    arms = [
+        CubePrimitive(
+            pose=Pose(
+                position=Vector3(),
+                orientation=Quaternion(z=sin(turn / 2), w=cos(turn / 2)),
+            ),
+            size=Vector3(x=2 * ARM_M, y=0.05, z=0.04),
+            color=_DARK,
+        )
+        for turn in (pi / 4, -pi / 4)
+    ]
+    body = CubePrimitive(
+        pose=Pose(position=Vector3(), orientation=NO_TURN),
+        size=Vector3(x=0.3, y=0.2, z=0.12),
+        color=_DARK,
+    )
+    reach = ARM_M / sqrt(2.0)
+    propellers = [
+        CylinderPrimitive(
+            pose=Pose(position=Vector3(x=forward, y=left, z=0.06), orientation=NO_TURN),
+            size=Vector3(x=0.4, y=0.4, z=0.015),
+            bottom_scale=1.0,
+            top_scale=1.0,
+            color=_FRONT if forward > 0 else _REAR,
+        )
+        for forward in (reach, -reach)
+        for left in (reach, -reach)
+    ]
+    entity = SceneEntity(
+        timestamp=stamp,
+        frame_id=frame_id,
+        id=name,
+        frame_locked=True,
+        cubes=[body, *arms],
+        cylinders=propellers,
+    )
+    return SceneUpdate(entities=[entity])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from gcs.bridge.translate.meaning import Forward, Sample, Seen, Sticks, Words
-from gcs.bridge.translate.pace import Pace
+from gcs.bridge.translate.settling import Pace
 from gcs.bridge.translate.translate import meaning_of
 from gcs.frames import Vec3
 from gcs.gate.states import State

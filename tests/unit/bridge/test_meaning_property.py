@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from gcs.bridge.translate.commands import COMMANDS
 from gcs.bridge.translate.meaning import Forward, Reject, Sample, Seen, Sticks, Words
-from gcs.bridge.translate.pace import Pace
-from gcs.bridge.translate.stick_stream import StickStream
+from gcs.bridge.translate.settling import Pace, StickStream
 from gcs.bridge.translate.translate import meaning_of
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from gcs import ipc
+from gcs.bridge.judge.motion import stream_of
 from gcs.bridge.translate.meaning import Sample
-from gcs.bridge.translate.samples import stream_of
 from gcs.gate.attitude import Attitude
 
 HALF = math.sqrt(0.5)

@@ -19,7 +19,7 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.bridge.translate.meaning import Reject, Sample, Seen, Settled, Sticks, Words
-from gcs.bridge.translate.stick_stream import StickStream
+from gcs.bridge.translate.settling import StickStream
 from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.airspace.stream_samples import StreamSample, beyond_rules
 from gcs.gate.policy.parse import DEFAULT

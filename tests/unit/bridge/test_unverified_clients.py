@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.conversation.dropped_messages import TOLD_NS
 from gcs.bridge.effects import Answers, Notes, ToLink
+from gcs.bridge.peers.client import TOLD_NS
 from gcs.bridge.peers.unverified_clients import TOLD_A_SECOND
 from gcs.gate.effects import Level
 from gcs.wire.frame import Frame

@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from gcs import ipc
-from gcs.bridge.translate.explain_modes import mode_explanation
+from gcs.bridge.translate.explain import mode_explanation
 from gcs.cli import bridge_text, main
 from gcs.cli.bridge_lines import STATUS_EVERY_NS, BridgeLines
 from gcs.cli.bridge_page import BridgePage

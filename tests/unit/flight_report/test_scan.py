@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from gcs.flight_report.facts import Decision, Estimator, Gps, Identity, LogLine, Text, Vibration
 from gcs.flight_report.flight import Flight
-from gcs.flight_report.log_line import read_log_line
 from gcs.flight_report.render import page
 from gcs.flight_report.scan import scan
 from gcs.flight_report.summary import (
@@ -21,7 +20,7 @@ from gcs.flight_report.summary import (
     what_happened,
     what_went_wrong,
 )
-from gcs.flight_report.topics import source_of
+from gcs.flight_report.topics import read_log_line, source_of
 from gcs.record import ros1
 from gcs.record.reading import BadRecordError
 from gcs.report import (
