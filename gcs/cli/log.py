@@ -9,18 +9,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.log_audit import audit
+from gcs.cli.log_audit import audit, sign
 from gcs.cli.log_check import check
-from gcs.cli.log_compact import compact
-from gcs.cli.log_cut import cut
 from gcs.cli.log_export import export_log
 from gcs.cli.log_files import cannot_write
 from gcs.cli.log_import import import_log
-from gcs.cli.log_merge import merge
 from gcs.cli.log_replay import replay
 from gcs.cli.log_report import report
-from gcs.cli.log_sign import sign
-from gcs.cli.record_files import NEW_RECORD, RECORD, reading_progress, told, writing
+from gcs.cli.log_rewrite import compact, cut, merge, recover
+from gcs.cli.record_files import RECORD, reading_progress, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -49,6 +46,7 @@ for command in (
     export_log,
     import_log,
     merge,
+    recover,
     replay,
     report,
     sign,
@@ -138,55 +136,6 @@ def layout(file: Path | None, output: Path | None, purpose: Purpose) -> None:
     except OSError as error:
         raise cannot_write(output, error) from error
     click.echo(f"{output}: import it in Foxglove (Layouts > Import from file)")
-
-
-@log.command()
-@click.argument("file", type=RECORD)
-@NEW_RECORD
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def recover(file: Path, output: Path, as_json: bool) -> None:
-    """Make a whole file of one whose writer was killed.
-
-    Everything that is complete in FILE goes to the new file, up to the last message that can
-    still be read.  FILE stays as it is.
-
-    Example: gcs log recover broken.mcap -o whole.mcap
-    """
-    import json
-
-    from gcs.record.recover import recover
-
-    with (
-        told(file),
-        reading_progress(file, "recovering") as progress,
-        writing(file, output),
-    ):
-        saved = recover(file, output, progress)
-    condition = saved.condition
-    if as_json:
-        values = {
-            "path": str(output),
-            "messages": saved.messages,
-            "seconds": saved.seconds,
-            "attachments": saved.attachments,
-            "source_closed": condition.closed,
-            "broken_chunk": condition.broken_chunk,
-            "damaged": condition.damaged,
-            "unread_bytes": condition.unread_bytes,
-            "orphans": saved.orphans,
-        }
-        click.echo(json.dumps(values))
-        return
-    click.echo(f"{output}: {saved.messages} messages, {saved.seconds:.1f} s recovered")
-    if condition.closed and not condition.damaged:
-        click.echo("the file was complete already; this is a copy")
-    if condition.broken_chunk:
-        click.echo("the last chunk breaks off: what could be decompressed of it is included")
-    if condition.damaged or saved.orphans:
-        click.echo(f"left out: {condition.damaged} damaged records, {saved.orphans} messages")
-    if condition.unread_bytes:
-        last = f"its last {condition.unread_bytes} bytes of {condition.size}"
-        click.echo(f"the rest of the file could not be read: {last}")
 
 
 def _print(flight: FlightInfo) -> None:

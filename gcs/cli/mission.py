@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import click
@@ -11,6 +12,7 @@ from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
+    from gcs.plan.items import Flown
     from gcs.plan.model import AutopilotName, Geodetic, Plan
 
 AUTOPILOT = click.Option(
@@ -92,10 +94,29 @@ def show(file: str, autopilot: AutopilotName | None, as_json: bool) -> int:
 @mission.command(epilog="Example: gcs mission items")
 def items() -> int:
     """Print how each mission item is flown, by autopilot and version."""
-    from gcs.cli.mission_items import items_lines
-
-    click.echo("\n".join(items_lines()))
+    click.echo("\n".join(_items_lines()))
     return ExitCode.DONE
+
+
+def _items_lines() -> Iterator[str]:
+    """A paragraph a command: its number and name, and what each firmware does with it."""
+    from gcs.plan.items import ROWS
+
+    yield "How each mission item is flown.  Recorded: PX4 1.14 and ArduCopter 4.7."
+    for row in ROWS:
+        yield f"{int(row.command):5d}  {row.command.name}"
+        cells = (row.px4_1_14, row.px4_1_15, row.copter_4_5, row.copter_4_7)
+        for names, flown in _grouped(cells):
+            yield f"         {names}: {flown.value}"
+
+
+def _grouped(cells: tuple[Flown, ...]) -> Iterator[tuple[str, Flown]]:
+    """Firmwares that do the same stand in one line."""
+    from gcs.plan.items import VERSIONS
+
+    for flown in dict.fromkeys(cells):
+        names = [name for name, cell in zip(VERSIONS, cells, strict=True) if cell is flown]
+        yield ("all" if len(names) == len(cells) else ", ".join(names)), flown
 
 
 def read_plan(file: str, autopilot: AutopilotName | None) -> Plan:

@@ -23,8 +23,7 @@ from gcs.cli.topic_reading import (
 from gcs.cli.topic_source import FROM, LAST, LINK, LOG, SECONDS, TO, Where, print_now
 
 if TYPE_CHECKING:
-    from gcs.topics.crossings import Crossings
-    from gcs.topics.rates import Intervals, Rate
+    from gcs.topics.rates import Crossings, Intervals, Rate
     from gcs.topics.selector import Path as FieldPath
     from gcs.topics.selector import Selector
     from gcs.topics.topic import Fields, Heard, Topic
@@ -76,8 +75,7 @@ def list_topics(
     """
     import msgspec
 
-    from gcs.topics.crossings import Crossings
-    from gcs.topics.rates import LIST_SPAN_S, Intervals
+    from gcs.topics.rates import LIST_SPAN_S, Crossings, Intervals
 
     wanted = selectors(topics)
     found: dict[str, tuple[Topic, Intervals]] = {}
@@ -212,8 +210,7 @@ def hz(
     Judged on the times at which a station received them, not on when this program hears of them.
     A frame that a bridge passed on is counted once.
     """
-    from gcs.topics.crossings import Crossings
-    from gcs.topics.rates import DEFAULT_WINDOW, Intervals
+    from gcs.topics.rates import DEFAULT_WINDOW, Crossings, Intervals
 
     wanted = selectors(topics)
     where = Where(log_file, last, links, from_s, to_s)
@@ -298,9 +295,8 @@ def info(
     """
     import msgspec
 
-    from gcs.topics.crossings import Crossings
     from gcs.topics.describe import message_info, topic_info
-    from gcs.topics.rates import LIST_SPAN_S, Intervals
+    from gcs.topics.rates import LIST_SPAN_S, Crossings, Intervals
 
     (selector,) = selectors((name,))
     known = message_info(selector.topic.rpartition("/")[2])

@@ -15,17 +15,25 @@ n   where a spline follows, from P to the place after Q; where a straight leg fo
 both scaled down, where they are longer together than four times the way from P to Q
 (SplineCurve::set_origin_and_destination).  vehicle-sim's are half as long, and at rest they are the
 way from P to Q.  The hull of a piece is that of both, and so of all that lies between.
+
+Where a mission goes on to from a spline waypoint without a stop is told here, too (`ways_on`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.hulls import ground_track
+from gcs.plan.commands import KINDS, Kind
+from gcs.plan.item_places import ItemPlaces, PlaceUnknownError
+from gcs.plan.items import Flown, flown_as
+from gcs.plan.jumps import jump_target
+from gcs.plan.model import AutopilotName, Plan
 from gcs.plan.overshoot import ahead, between, past
 
 _LAG_M = 4.0
@@ -41,6 +49,8 @@ _STEPS = 16
 _ROUND = tuple((math.sin(0.25 * math.pi * n), math.cos(0.25 * math.pi * n)) for n in range(8))
 
 Bezier: TypeAlias = tuple[Vec3, Vec3, Vec3, Vec3]
+
+_THROUGH = (Flown.STRAIGHT, Flown.STAYS, Flown.CURVE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,3 +190,33 @@ def _blossom(controls: Bezier, r: float, s: float, t: float) -> Vec3:
 
 def _mixed(a: Vec3, b: Vec3, t: float) -> Vec3:
     return (a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]))
+
+
+def ways_on(
+    plan: Plan, index: int, places: ItemPlaces, autopilot: AutopilotName, pos_ned: Vec3
+) -> tuple[tuple[Onward, ...], bool]:
+    """Where it may go on to from item `index`, which ends at `pos_ned`, by every jump; and whether
+    it may end at rest."""
+    if plan.items[index].params[0] > 0.0:
+        return (), True
+    found: list[Onward] = []
+    waiting, seen = [index + 1], set[int]()
+    while waiting:
+        at = waiting.pop()
+        if at in seen or at >= len(plan.items):
+            continue
+        seen.add(at)
+        item = plan.items[at]
+        if KINDS.get(item.command) in (Kind.MOVE, Kind.RETURN, Kind.WAIT):
+            flown = flown_as(item.command, autopilot)
+            if flown in _THROUGH:
+                with suppress(PlaceUnknownError):  # told when the walk comes to it
+                    found.append(Onward(places.place(item, pos_ned), flown is Flown.CURVE))
+            continue
+        waiting.append(at + 1)
+        target = jump_target(plan, item) if KINDS.get(item.command) is Kind.JUMP else None
+        if target is not None:
+            waiting.append(target)
+    after = plan.items[index + 1] if index + 1 < len(plan.items) else None
+    at_once = after is not None and flown_as(after.command, autopilot) in _THROUGH
+    return tuple(found), not (at_once and found)

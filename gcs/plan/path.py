@@ -27,7 +27,7 @@ from gcs.plan import commands, returns
 from gcs.plan.change_speed import leg_speed_m_s
 from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, Kind
-from gcs.plan.curves import Neighbours, pieces, splines
+from gcs.plan.curves import Neighbours, pieces, splines, ways_on
 from gcs.plan.feasibility import never_starts
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError, is_here
 from gcs.plan.items import Flown, flown_as
@@ -44,7 +44,6 @@ from gcs.plan.legs import (
     RegionKind,
 )
 from gcs.plan.model import Item, Plan
-from gcs.plan.onward import ways_on
 from gcs.plan.overshoot import overshoot_m, past
 from gcs.plan.turns import blend, fewer, turning_places
 from gcs.wire.ids import Cmd

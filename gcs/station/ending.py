@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gcs import ipc
+from gcs import ipc, toml
 from gcs.exit_codes import ExitCode
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level
@@ -13,7 +13,6 @@ from gcs.session.work import For, Log, ToGate, Work
 from gcs.station.clients import LEAVING_NS
 from gcs.station.operators import Operators
 from gcs.station.vehicles import Vehicles
-from gcs.station.zone_lines import where_is
 from gcs.vehicle.vehicle import Vehicle
 
 NODE = "link"
@@ -126,3 +125,20 @@ def _last_words(vehicle: Vehicle, name: str) -> str:
         return f"{name} is on the ground" + (", still ARMED" if telemetry.armed else "")
     height = "" if telemetry.pos_ned is None else f", {-telemetry.pos_ned[2]:.1f} m up"
     return f"{name} is STILL FLYING in {telemetry.mode_name}{height}"
+
+
+def where_is(zone: str, setup: Setup) -> str:
+    """Where a zone stands in its policy file, for errors that show only with a vehicle.
+
+    Such as `yard.toml:4: fence[1]`, as errors of a policy are told; without line and number where
+    the zone is none of the file's own tables.
+    """
+    file = setup.config.policy_path or setup.policy.name
+    doc = toml.read(setup.policy_text, file)
+    tables = doc.data.get("fence", [])
+    assert isinstance(tables, list)
+    for number, table in enumerate(tables):
+        if table.get("name") == zone:
+            line = doc.lines.get(("fence", number), 0)
+            return f"{file}:{line}: fence[{number + 1}]"
+    return f"{file}: fence"

@@ -33,12 +33,11 @@ from gcs.vehicle.parameters.stop_parameters import StopParameters
 from gcs.vehicle.talk.commands import Commands
 from gcs.vehicle.talk.discovery import Discovery
 from gcs.vehicle.talk.heard_vehicles import Roster
-from gcs.vehicle.talk.late_refusal_reasons import Reasons
 from gcs.vehicle.talk.liveness import Presence
 from gcs.vehicle.talk.px4_events import Events
 from gcs.vehicle.talk.restarts import STEP_NS, Restarts
 from gcs.vehicle.talk.telemetry import Telemetry
-from gcs.vehicle.talk.vehicle_texts import Words
+from gcs.vehicle.talk.vehicle_texts import Reasons, Words
 
 NODE = "link"
 

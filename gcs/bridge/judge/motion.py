@@ -120,7 +120,7 @@ def _arms_too(message: Message) -> bool:
 
 
 def stream_of(sample: Sample) -> ipc.Stream:
-    """The same in east, north, up and degrees."""
+    """A sample of a setpoint stream in the operators' words: in east, north, up and degrees."""
     if sample.attitude is not None:
         roll, pitch, yaw = map(math.degrees, roll_pitch_yaw(sample.attitude.q_ned_from_frd))
         return ipc.Stream(

@@ -1,7 +1,8 @@
-"""Whether a battery is low or critical: what the vehicle tells of each, beside the policy's limits.
+"""What a vehicle tells of its batteries: is one low or critical, and how much charge is left?
 
 SYS_STATUS has the share of charge and the voltage of the first battery, BATTERY_STATUS has both of
-each, and what the vehicle itself calls its state.  The worst counts.
+each, and what the vehicle itself calls its state.  Beside the policy's limits the worst counts, and
+of the charge the least.
 """
 
 from __future__ import annotations
@@ -31,6 +32,9 @@ PROPULSION: Final = frozenset(
 )
 FIRST: Final = -1
 """The battery of SYS_STATUS."""
+
+MOST_AGE_NS: Final = 15_000_000_000
+"""Both messages come about once a second; over a slow radio every few."""
 
 
 class Level(IntEnum):
@@ -116,3 +120,32 @@ class Batteries:
 
 
 _STATES: Final = frozenset(int(state) for state in ChargeState)
+
+
+@dataclass(slots=True)
+class Charge:
+    """How much is left of one vehicle: the least of its batteries that drive motors.
+
+    What was told some time ago counts no more, nor what a vehicle does not know any longer (-1 %).
+    """
+
+    _told: dict[int, tuple[int, int]] = field(default_factory=dict)
+    """Per cent and when, by the battery."""
+
+    def system_status(self, message: SysStatus, now_ns: int) -> None:
+        self._told[FIRST] = message.battery_remaining, now_ns
+
+    def battery_status(self, message: BatteryStatus, now_ns: int) -> None:
+        if message.battery_function in PROPULSION:
+            self._told[message.id] = message.battery_remaining, now_ns
+
+    def left_pct(self, now_ns: int) -> float | None:
+        """None where nobody knows."""
+        return min(
+            (
+                float(pct)
+                for pct, told_ns in self._told.values()
+                if pct >= 0 and now_ns - told_ns <= MOST_AGE_NS
+            ),
+            default=None,
+        )

@@ -40,8 +40,7 @@ from gcs.vehicle.missions.jobs.job import (
 from gcs.vehicle.missions.jobs.set_current import SetCurrent, flown_by_mode
 from gcs.vehicle.missions.jobs.start import Start
 from gcs.vehicle.missions.jobs.starting import StartingJob, first_item
-from gcs.vehicle.missions.jobs.upload import Upload
-from gcs.vehicle.missions.jobs.upload_from_client import ClientUpload
+from gcs.vehicle.missions.jobs.upload import ClientUpload, Upload
 from gcs.vehicle.missions.jobs.verify_on_board import Adopt
 from gcs.vehicle.missions.mission_current import MissionTold
 from gcs.vehicle.missions.paths import autopilot_name, is_placed

@@ -13,7 +13,7 @@ from gcs.gate.inputs import AccuracySeen
 from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import Autopilot, type_name
 from gcs.report import Quat
-from gcs.vehicle.health.battery_charge import Charge
+from gcs.vehicle.health.battery import Charge
 from gcs.vehicle.health.position_health import Estimator, Gps, PositionHealth
 from gcs.vehicle.health.position_latency import Delay
 from gcs.vehicle.talk.restarts import Clock

@@ -3,21 +3,22 @@
 A STATUSTEXT longer than 50 characters comes in chunks.  PX4 ends a text that it also sends as an
 EVENT with a TAB; where that text is lost, the event, which is asked for again, is told instead.
 Reasons come as texts (ArduPilot's "Arm: ...", "PreArm: ...", PX4's "... denied") and as PX4's
-events, before the COMMAND_ACK or right after it.
+events, before the COMMAND_ACK or right after it: a refusal waits a moment for them.
 """
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from gcs.gate.effects import Level
+from gcs.gate.effects import CommandKind, Level
+from gcs.gate.inputs import CommandEnded
 from gcs.protocol.px4_event_words import WordedEvent, worded
 from gcs.protocol.px4_events import ArmingChecks
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log
+from gcs.session.work import Log, ToGate, Work
 from gcs.wire.ids import Severity
 from gcs.wire.messages import Event, Statustext
 
@@ -50,6 +51,13 @@ STATUSTEXT_LEVEL: Final = {
     Severity.INFO: Level.INFO,
     Severity.DEBUG: Level.DEBUG,
 }
+
+REASON_WAIT_NS: Final = 150_000_000
+"""How long a refusal waits for its reason: ArduPilot's text may leave a moment after its answer."""
+WAITS_FOR_REASONS: Final = frozenset(
+    {CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START_MISSION, CommandKind.SET_MODE}
+)
+"""What nobody is stopped by: no refused hold, landing or disarming waits for words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,3 +200,53 @@ def logged(said: Iterable[Said]) -> list[Log]:
     return [
         Log(STATUSTEXT_LEVEL[Severity(each.severity & 7)], "vehicle", each.text) for each in said
     ]
+
+
+class Reasons:
+    """Adds to each refusal what the vehicle said against it."""
+
+    def __init__(self, words: Words, times: Times) -> None:
+        self._words = words
+        self._wait_ns = times.real_ns(REASON_WAIT_NS)
+        self._arm_asked_ns = 0
+        self._waiting: tuple[tuple[int, CommandEnded], ...] = ()
+
+    @property
+    def deadline_ns(self) -> int | None:
+        """When a refusal has waited long enough."""
+        return min((due_ns for due_ns, _ in self._waiting), default=None)
+
+    def asked(self, kind: CommandKind, now_ns: int) -> None:
+        """A command is on its way: what is said from now on may be about it."""
+        if kind is CommandKind.ARM:
+            self._arm_asked_ns = now_ns
+
+    def explained(self, work: Iterable[Work], custom_mode: int, now_ns: int) -> list[Work]:
+        """`work` with the reasons of the refusals in it; one that has none yet comes later.
+
+        `custom_mode` is the vehicle's mode, as its heartbeat shows it.
+        """
+        explained: list[Work] = []
+        for item in work:
+            match item:
+                case ToGate(CommandEnded(kind=kind, result=result) as ended) if result:
+                    text = self._text(kind, custom_mode, now_ns)
+                    if text or kind not in WAITS_FOR_REASONS:
+                        explained.append(ToGate(replace(ended, text=text)))
+                    else:
+                        self._waiting = *self._waiting, (now_ns + self._wait_ns, ended)
+                case _:
+                    explained.append(item)
+        return explained
+
+    def wake(self, custom_mode: int, now_ns: int) -> list[Work]:
+        """The refusals that have waited long enough."""
+        due = [ended for due_ns, ended in self._waiting if now_ns >= due_ns]
+        self._waiting = tuple(item for item in self._waiting if now_ns < item[0])
+        texts = (self._text(ended.kind, custom_mode, now_ns) for ended in due)
+        return [ToGate(replace(ended, text=text)) for ended, text in zip(due, texts, strict=True)]
+
+    def _text(self, kind: CommandKind, custom_mode: int, now_ns: int) -> str:
+        if kind is CommandKind.ARM:
+            return self._words.reasons_not_to_arm(custom_mode, self._arm_asked_ns, now_ns)
+        return self._words.reasons(now_ns)

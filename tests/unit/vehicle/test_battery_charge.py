@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.vehicle.health.battery_charge import MOST_AGE_NS, Charge
+from gcs.vehicle.health.battery import MOST_AGE_NS, Charge
 from gcs.wire.ids import BatteryFunction
 from gcs.wire.messages import BatteryStatus, SysStatus
 

@@ -5,7 +5,7 @@ compared in meaning.  The plan's own fence and rally points leave before it, as 
 mission by the fence that it has; a plan without them leaves those on board as they are.
 
 Where the plan comes from is the subclass's: a file (`upload.py`), or a client
-(`upload_from_client.py`).
+(`upload.py`).
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.steps import drained
 from gcs.vehicle.missions.jobs.clear import Clear
 from gcs.vehicle.missions.jobs.forward_fence import RelayPlan
-from gcs.vehicle.missions.jobs.upload_from_client import ClientUpload
+from gcs.vehicle.missions.jobs.upload import ClientUpload
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import Cmd, MavFrame, MissionResult, MissionType
 from gcs.wire.messages import (

@@ -21,7 +21,7 @@ from gcs.plan.wire import WireItem
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.work import Decide
 from gcs.vehicle.missions.jobs.check import CheckUnknown
-from gcs.vehicle.missions.jobs.upload_from_client import ClientUpload
+from gcs.vehicle.missions.jobs.upload import ClientUpload
 from gcs.vehicle.missions.jobs.verify_on_board import Adopt
 from gcs.wire.ids import Cmd, MavFrame, MissionType
 from gcs.wire.messages import MissionCount
