@@ -196,7 +196,7 @@ class _Keyboard:
         """Do what was pressed; False to end."""
         import os
 
-        from gcs.replay.keys import keys_of
+        from gcs.replay.player import keys_of
 
         pressed = os.read(sys.stdin.fileno(), 64)
         for key in keys_of(pressed):

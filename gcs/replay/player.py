@@ -3,12 +3,14 @@
 A frame that was received t seconds after the one where playing began is due t / speed seconds after
 playing began.  Each due time is counted from there and not from the frame before, so that no
 lateness adds up.
+
+What is pressed meanwhile comes as the bytes that a terminal sends for a key (`keys_of`).
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -33,6 +35,26 @@ class Key(Enum):
     FASTER = auto()
     SLOWER = auto()
     BEGIN = auto()
+
+
+KEYS: dict[bytes, Key | None] = {
+    b" ": Key.PAUSE,
+    b"\x1b[D": Key.BACK,
+    b"\x1bOD": Key.BACK,
+    b"\x1b[C": Key.ON,
+    b"\x1bOC": Key.ON,
+    b"\x1b[B": Key.FAR_BACK,
+    b"\x1bOB": Key.FAR_BACK,
+    b"\x1b[A": Key.FAR_ON,
+    b"\x1bOA": Key.FAR_ON,
+    b"+": Key.FASTER,
+    b"=": Key.FASTER,
+    b"-": Key.SLOWER,
+    b"0": Key.BEGIN,
+    b"q": None,
+    b"\x04": None,
+}
+"""None ends it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,3 +165,14 @@ class Player:
             return self._anchor_log_ns
         log_ns = self._anchor_log_ns + round((now_ns - self._anchor_ns) * self.speed)
         return min(log_ns, self._times_ns[-1])
+
+
+def keys_of(pressed: bytes) -> Iterator[Key | None]:
+    """What was asked for, in order; other keys mean nothing."""
+    at = 0
+    while at < len(pressed):
+        size = 3 if pressed[at : at + 1] == b"\x1b" else 1
+        name = pressed[at : at + size]
+        if name in KEYS:
+            yield KEYS[name]
+        at += size

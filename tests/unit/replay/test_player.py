@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs.replay.keys import keys_of
-from gcs.replay.player import LATE_NS, LOOP_PAUSE_NS, Key, Player
+from gcs.replay.player import LATE_NS, LOOP_PAUSE_NS, Key, Player, keys_of
 
 MS = 1_000_000
 SECOND = 1_000_000_000
