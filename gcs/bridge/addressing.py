@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
 
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import OfVehicle
+from gcs.bridge.effects import AboutVehicle
 from gcs.bridge.judge.judge import Judge
 from gcs.bridge.judge.received import Judged, Look, Received
 from gcs.bridge.peers.client import Client
@@ -66,14 +66,14 @@ class Judges:
             self._by_sysid[sysid] = found
         return found
 
-    def client_lost(self, client: Client, own: Address) -> list[OfVehicle]:
+    def client_lost(self, client: Client, own: Address) -> list[AboutVehicle]:
         """What a client had the vehicles send is taken back, and its turn to read is over."""
         done = []
         for sysid, judge in self._by_sysid.items():
             vehicle = Address(sysid, Component.AUTOPILOT1)
             effects = judge.client_lost(client.number, client.link, own, vehicle)
             if effects:
-                done.append(OfVehicle(sysid, tuple(effects)))
+                done.append(AboutVehicle(sysid, tuple(effects)))
         return done
 
     def asked_once(self, now_ns: int) -> list[Received]:
@@ -151,4 +151,4 @@ class Judges:
 def _at(vehicle: Address, judged: Judged) -> Judged:
     """The same, as that vehicle's."""
     effects = judged.effects
-    return Judged(judged.refused, [OfVehicle(vehicle.sysid, tuple(effects))] if effects else [])
+    return Judged(judged.refused, [AboutVehicle(vehicle.sysid, tuple(effects))] if effects else [])

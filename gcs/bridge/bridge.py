@@ -1,6 +1,6 @@
 """The bridge: all MAVLink clients of one station, before its vehicles.
 
-Who is there (`client.py`), where frames go (`routing.py`), what is done with each (`judge/`), and
+Who is there (`peers/client.py`), where frames go (`routing.py`), what is done with each (`judge/`), and
 what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded here.
 """
 
@@ -15,14 +15,14 @@ from gcs.bridge.armings import Armings
 from gcs.bridge.catalog import Kind, message_row
 from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import (
-    Answers,
+    AboutVehicle,
     AsksVehicle,
     BridgeEffect,
+    ForwardToLink,
     Joined,
+    LogLine,
     Lost,
-    Notes,
-    OfVehicle,
-    ToLink,
+    Reply,
 )
 from gcs.bridge.judge.climbs import asks_for_height, climbs
 from gcs.bridge.judge.plans import of_plan
@@ -94,7 +94,7 @@ class Bridge:
         if not verified:
             return [*self.unverified.come(link, name)]
         self.routes.open(link)
-        return [Notes(Level.INFO, f"{name} has connected, on link {link}")]
+        return [LogLine(Level.INFO, f"{name} has connected, on link {link}")]
 
     def verify(self, link: int) -> list[BridgeEffect]:
         """The first frame of a peer that was `unverified` is good."""
@@ -112,7 +112,10 @@ class Bridge:
             return []
         if link in self.unverified:
             return [*self.unverified.go(link, client.name, reason)]
-        return [*self._lose(client, reason), Notes(Level.INFO, f"{client.name} has gone: {reason}")]
+        return [
+            *self._lose(client, reason),
+            LogLine(Level.INFO, f"{client.name} has gone: {reason}"),
+        ]
 
     def flooded(self, link: int, dropped: int) -> list[BridgeEffect]:
         """It sends more than it may; so many datagrams were not looked at."""
@@ -120,7 +123,9 @@ class Bridge:
         if client is None:
             return []
         client.dropped.count += dropped
-        return [Notes(Level.WARNING, f"{client.name} sends too much: {dropped} datagrams dropped")]
+        return [
+            LogLine(Level.WARNING, f"{client.name} sends too much: {dropped} datagrams dropped")
+        ]
 
     def second(self, vehicles: Sequence[Address], now_ns: int) -> list[BridgeEffect]:
         """Once a second: whoever says nothing any more is lost, and who sends too much is told, in
@@ -135,7 +140,7 @@ class Bridge:
                 effects += self._lose(client, f"silent for {self._silent_ns / 1e9:.0f} s")
             if client.link not in self.unverified:
                 flooded = client.dropped.due_text(self._rate_hz, now_ns)
-                effects += [Answers(client.link, speaker, text) for text in flooded]
+                effects += [Reply(client.link, speaker, text) for text in flooded]
         return effects
 
     def ask_again(self, look: LookAt, now_ns: int) -> list[BridgeEffect]:
@@ -223,7 +228,7 @@ class Bridge:
         """A frame for a system that is no vehicle of ours: another client, or nobody."""
         links = self.routes.between_clients(frame, client.link)
         if links and message_row(frame.msgid).kind is not Kind.DENIED:
-            return Judged(False, [ToLink(link, frame.raw) for link in links])
+            return Judged(False, [ForwardToLink(link, frame.raw) for link in links])
         if sysid == self._own.sysid:
             answered = self._refused_addresses.of_own(client, frame)
             return Judged(bool(answered), answered)
@@ -284,7 +289,7 @@ class Bridge:
     def armed(self, vehicle: Address) -> list[BridgeEffect]:
         """Once a second, of every vehicle that is armed."""
         ended = self._judges.of(vehicle.sysid).set_up.armed(self._own, vehicle)
-        return [OfVehicle(vehicle.sysid, tuple(ended))]
+        return [AboutVehicle(vehicle.sysid, tuple(ended))]
 
     def held_back(
         self, command: ipc.Command, autopilot: Autopilot, vehicle: Address
@@ -372,7 +377,7 @@ class Bridge:
         """Who is in control, by the protocol's own message, for the clients that understand it."""
         told = [c for c in self._by_number.values() if self._control.speaks(c.number)]
         status = self._control.status
-        return [Answers(client.link, vehicle, status) for client in told for vehicle in vehicles]
+        return [Reply(client.link, vehicle, status) for client in told for vehicle in vehicles]
 
     def _sysid_of(self, number: int) -> int:
         """What the operator in control calls itself: a client by its system id, an operator of the

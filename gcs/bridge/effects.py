@@ -31,7 +31,7 @@ class Lost:
 
 
 @dataclass(frozen=True, slots=True)
-class Says:
+class ClientRequest:
     """What a client asks for, in an operator's words."""
 
     client: int
@@ -39,7 +39,7 @@ class Says:
 
 
 @dataclass(frozen=True, slots=True)
-class Refuses:
+class ClientRefused:
     """What a client asks for is refused before the gate sees it; `ask` names it."""
 
     client: int
@@ -67,7 +67,7 @@ class StopsPlan:
 
 
 @dataclass(frozen=True, slots=True)
-class OfVehicle:
+class AboutVehicle:
     """What is about the vehicle with that system id (0: the first, before it is heard).
 
     What is in no such effect is about all of them.
@@ -78,7 +78,7 @@ class OfVehicle:
 
 
 @dataclass(frozen=True, slots=True)
-class ToVehicle:
+class ForwardToVehicle:
     """A frame of a client that goes to the vehicle as it is; for all, on each link once."""
 
     raw: bytes
@@ -106,7 +106,7 @@ class ChangesRallyPoints:
 
 
 @dataclass(frozen=True, slots=True)
-class ToLink:
+class ForwardToLink:
     """A frame that goes to a client's link as it is."""
 
     link: int
@@ -114,7 +114,7 @@ class ToLink:
 
 
 @dataclass(frozen=True, slots=True)
-class Answers:
+class Reply:
     """A message for a client, in the name of the component that it addressed."""
 
     link: int
@@ -123,7 +123,7 @@ class Answers:
 
 
 @dataclass(frozen=True, slots=True)
-class Notes:
+class LogLine:
     """A line for the log."""
 
     level: Level
@@ -133,16 +133,16 @@ class Notes:
 BridgeEffect: TypeAlias = (
     Joined
     | Lost
-    | Says
-    | Refuses
-    | OfVehicle
+    | ClientRequest
+    | ClientRefused
+    | AboutVehicle
     | AsksPlan
     | StopsPlan
-    | ToVehicle
+    | ForwardToVehicle
     | AsksVehicle
     | AsksForStreams
     | ChangesRallyPoints
-    | ToLink
-    | Answers
-    | Notes
+    | ForwardToLink
+    | Reply
+    | LogLine
 )

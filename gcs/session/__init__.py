@@ -1,1 +1,1 @@
-"""The link's brain, without sockets, clocks or files: see `core.Session`."""
+"""What reaches a station, what it answers, and the work between: the words of every part of it."""

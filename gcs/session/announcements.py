@@ -30,7 +30,7 @@ from gcs.report import (
 )
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.requests import Asked
-from gcs.session.work import Decide, Log
+from gcs.session.work import GiveVerdict, Log
 
 NODE = "state_and_safety"
 
@@ -48,7 +48,7 @@ def requested(asked: Asked, request: Request) -> Log:
     return Log(Level.INFO, NODE, f"Requested: {asked.word}")
 
 
-def verdict(told: Decide, asked: Asked, sysid: int) -> list[Effect]:
+def verdict(told: GiveVerdict, asked: Asked, sysid: int) -> list[Effect]:
     """Accepted, refused or superseded; with the numbers it was decided on."""
     refusal = told.refusal
     item = DecisionItem(
@@ -78,7 +78,7 @@ def verdict(told: Decide, asked: Asked, sysid: int) -> list[Effect]:
     return [Emit(event, asked.client), Record(item)]
 
 
-def bridge_decision(told: Decide, asked: Asked, name: str, sysid: int, now_ns: int) -> Emit:
+def bridge_decision(told: GiveVerdict, asked: Asked, name: str, sysid: int, now_ns: int) -> Emit:
     """The verdict on what a MAVLink client asked for, for whoever watches the bridge."""
     refusal = told.refusal
     return Emit(

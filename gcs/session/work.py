@@ -27,14 +27,14 @@ STATION: Final = -1
 """The owner of work that is no vehicle's; vehicles have their slots, from 0 up."""
 
 
-class For(msgspec.Struct, frozen=True):
+class ForOwner(msgspec.Struct, frozen=True):
     """Work for another owner, and whatever it leads to."""
 
     owner: int
     work: tuple[Work, ...]
 
 
-class ToGate(msgspec.Struct, frozen=True, gc=False):
+class GateInput(msgspec.Struct, frozen=True, gc=False):
     """An input for the owner's gate; of the station: for every vehicle's gate."""
 
     given: gate_inputs.Input
@@ -54,7 +54,7 @@ class AskGate(msgspec.Struct, frozen=True, gc=False):
     request: Request
 
 
-class Decide(msgspec.Struct, frozen=True, gc=False):
+class GiveVerdict(msgspec.Struct, frozen=True, gc=False):
     """The verdict on a request that the gate does not decide (mission transfers) or has decided."""
 
     request_id: int
@@ -72,7 +72,7 @@ class Log(msgspec.Struct, frozen=True, gc=False):
     text: str
 
 
-class Tell(msgspec.Struct, frozen=True, gc=False):
+class TellOperator(msgspec.Struct, frozen=True, gc=False):
     """An event for the operator who made the request `request_id`, which is not over yet."""
 
     request_id: int
@@ -147,13 +147,13 @@ class CheckStart(msgspec.Struct, frozen=True, gc=False):
 Work: TypeAlias = (
     Effect
     | gate_effects.Effect
-    | For
-    | ToGate
+    | ForOwner
+    | GateInput
     | GateAnswered
     | AskGate
-    | Decide
+    | GiveVerdict
     | Log
-    | Tell
+    | TellOperator
     | AskMission
     | AskOrbit
     | OrbitSample

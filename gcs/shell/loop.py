@@ -71,7 +71,7 @@ nothing costs as much as the first one, and what does come then is there in the 
 
 
 class Core(Protocol):
-    """What the loop drives: `gcs.session.Session`, or a test's stand-in."""
+    """What the loop drives: `gcs.station.session.Session`, or a test's stand-in."""
 
     @property
     def deadline_ns(self) -> int: ...

@@ -11,18 +11,18 @@ import msgspec
 from gcs import ipc
 from gcs.bridge.bridge import Bridge
 from gcs.bridge.effects import (
-    Answers,
     AsksPlan,
     AsksVehicle,
     BridgeEffect,
+    ClientRefused,
+    ClientRequest,
+    ForwardToLink,
+    ForwardToVehicle,
     Joined,
+    LogLine,
     Lost,
-    Notes,
-    Refuses,
-    Says,
+    Reply,
     StopsPlan,
-    ToLink,
-    ToVehicle,
 )
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.peers.link_loops import LEFT_OUT_NS, Loops
@@ -210,7 +210,7 @@ class BridgePort:
         if not self.bridge.armings.unasked(sysid, armed=seen.armed, asked=asked):
             return []
         address = Address(sysid, vehicle.telemetry.compid)
-        note = Notes(Level.WARNING, UNASKED)
+        note = LogLine(Level.WARNING, UNASKED)
         return [note, *self.bridge.warn(Level.WARNING, UNASKED, address, now_ns)]
 
     def second(
@@ -273,7 +273,7 @@ class BridgePort:
 
     def as_operator(
         self,
-        item: Joined | Lost | Says | Refuses | AsksPlan | StopsPlan | Notes | Emit,
+        item: Joined | Lost | ClientRequest | ClientRefused | AsksPlan | StopsPlan | LogLine | Emit,
         vehicle: Vehicle,
         now_ns: int,
     ) -> list[Work]:
@@ -284,29 +284,32 @@ class BridgePort:
                 return self._operators.join(client, name, hold_on_leave=True)
             case Lost(client, reason):
                 return self._operators.lost(client, reason)
-            case Says(client, command):
+            case ClientRequest(client, command):
                 return [line(self._operators, self._vehicles, self.bridge, client, command, now_ns)]
-            case Refuses(client, ask, refusal):
+            case ClientRefused(client, ask, refusal):
                 return self._operators.refuse(client, ask, refusal)
             case AsksPlan():
                 return self._operators.ask_plan(item, vehicle.refusal(now_ns), now_ns)
             case StopsPlan():
                 return self._operators.stop_plan(item)
-            case Notes(level, text):
+            case LogLine(level, text):
                 return [Log(level, NODE, text)]
             case Emit(event, client):
                 return [*self.bridge.told(client, event, vehicle.sysid, now_ns)]
 
     def pass_on(
-        self, item: ToVehicle | AsksVehicle | ToLink | Answers, links: Sequence[int], now_ns: int
+        self,
+        item: ForwardToVehicle | AsksVehicle | ForwardToLink | Reply,
+        links: Sequence[int],
+        now_ns: int,
     ) -> list[Effect]:
         """Frames between clients and vehicles, which are answered on `links`."""
         match item:
-            case ToLink(link, raw):
+            case ForwardToLink(link, raw):
                 return self._links.pass_on(link, raw, now_ns)
-            case Answers(link, source, message):
+            case Reply(link, source, message):
                 return self._links.send_as(source, link, message, now_ns)
-            case ToVehicle(raw):
+            case ForwardToVehicle(raw):
                 return [
                     sent
                     for link in links

@@ -17,7 +17,7 @@ from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.session.effects import Emit
 from gcs.session.requests import FIRST
-from gcs.session.work import STATION, For, Log, ToGate, Work
+from gcs.session.work import STATION, ForOwner, GateInput, Log, Work
 
 NOBODY = 0
 ALWAYS_HEARD = frozenset(
@@ -127,7 +127,7 @@ class Clients:
     @staticmethod
     def _hold(reason: str) -> list[Work]:
         """Every vehicle that is flown here: none of them has anybody in control any more."""
-        return [For(STATION, (ToGate(gate_inputs.OperatorLost(reason, for_good=False)),))]
+        return [ForOwner(STATION, (GateInput(gate_inputs.OperatorLost(reason, for_good=False)),))]
 
     # --------------------------------------------------------------------------- control
 

@@ -9,7 +9,7 @@ from gcs.gate.effects import Level
 from gcs.session.effects import Emit, Finish
 from gcs.session.setup import Setup
 from gcs.session.speedup_waits import Times
-from gcs.session.work import For, Log, ToGate, Work
+from gcs.session.work import ForOwner, GateInput, Log, Work
 from gcs.station.clients import LEAVING_NS
 from gcs.station.operators import Operators
 from gcs.station.vehicles import Vehicles
@@ -39,7 +39,7 @@ class Ending:
         self._leaving_since_ns = now_ns
         self._vehicles.closed = True
         lost = gate_inputs.OperatorLost(reason)
-        return [Log(Level.INFO, NODE, f"leaving: {reason}"), ToGate(lost)]
+        return [Log(Level.INFO, NODE, f"leaving: {reason}"), GateInput(lost)]
 
     @property
     def under_way(self) -> bool:
@@ -81,7 +81,7 @@ class Ending:
             if vehicle.bad_start is not None and slot not in self._told_outside:
                 self._told_outside.add(slot)
                 text = f"it stands outside the fence: {vehicle.bad_start.sentence}"
-                told.append(For(slot, (Log(Level.ERROR, NODE, text),)))
+                told.append(ForOwner(slot, (Log(Level.ERROR, NODE, text),)))
         return told
 
     def _farewells(self, log_path: str, now_ns: int) -> list[Work]:
@@ -111,7 +111,7 @@ def _end_requests(vehicle: Vehicle) -> list[Work]:
     """A request that came while the station was being left, or that the gate waited for."""
     if vehicle.gate.memory.task is None:
         return []
-    return [ToGate(gate_inputs.OperatorLost("the station ends"))]
+    return [GateInput(gate_inputs.OperatorLost("the station ends"))]
 
 
 def _last_words(vehicle: Vehicle, name: str) -> str:

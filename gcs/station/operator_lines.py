@@ -11,7 +11,7 @@ from gcs import ipc
 from gcs.bridge.bridge import Bridge
 from gcs.bridge.judge.climbs import HEIGHT_WRITTEN
 from gcs.protocol.effects import Address
-from gcs.session.work import STATION, For, Work
+from gcs.session.work import STATION, ForOwner, Work
 from gcs.station.operators import Operators
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.gate_port import NOT_FLYING
@@ -27,19 +27,19 @@ def line(
     client: int,
     command: ipc.Command,
     now_ns: int,
-) -> For:
+) -> ForOwner:
     """One command of the operator `client`; what is about no vehicle is the station's.
 
     A climb is held back for a moment after a MAVLink client has written how high one is, and an
     arming after one has set the mode of a mission.
     """
     if not isinstance(command, ipc.Ask | ipc.Stream):
-        return For(STATION, tuple(operators.line(client, command, None, None, now_ns)))
+        return ForOwner(STATION, tuple(operators.line(client, command, None, None, now_ns)))
     work = [
-        For(owner, tuple(_asked(operators, vehicles, bridge, client, asked, owner, now_ns)))
+        ForOwner(owner, tuple(_asked(operators, vehicles, bridge, client, asked, owner, now_ns)))
         for owner, asked in _for_each(operators, vehicles, command)
     ]
-    return work[0] if len(work) == 1 else For(STATION, tuple(work))
+    return work[0] if len(work) == 1 else ForOwner(STATION, tuple(work))
 
 
 def _asked(

@@ -28,13 +28,13 @@ from gcs.session.work import (
     AskGate,
     AskMission,
     AskOrbit,
-    Decide,
     EndSession,
+    GateInput,
+    GiveVerdict,
     Log,
     StopTransfer,
     StreamOver,
-    Tell,
-    ToGate,
+    TellOperator,
     Work,
 )
 from gcs.station.clients import NOBODY, Clients
@@ -215,7 +215,7 @@ class Operators:
         if free and not self._streams.goes_on(client, sample, now_ns):
             return []
         # Who is free to take control has it when the gate has let the sample through.
-        return [ToGate(self._streams.seen(client, sample, now_ns))]
+        return [GateInput(self._streams.seen(client, sample, now_ns))]
 
     def _refuse_sample(
         self, client: int, sample: ipc.Stream, refusal: Refusal, now_ns: int
@@ -289,7 +289,7 @@ class Operators:
     @staticmethod
     def _refuse(request_id: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
         text = f"{ask.word[:LOGGED_LETTERS]}: refused {refusal.code.value}: {refusal.sentence}"
-        return [Decide(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)]
+        return [GiveVerdict(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)]
 
     # ---------------------------------------------------------------------------- answers
 
@@ -304,9 +304,9 @@ class Operators:
             if refusal is not None:
                 return self._refuse(asked.request_id, made.ask, refusal)
         given = gate_inputs.Requested(asked.request_id, made.source, asked.request)
-        return [announcements.requested(made, asked.request), ToGate(given)]
+        return [announcements.requested(made, asked.request), GateInput(given)]
 
-    def verdict(self, told: Decide, sysid: int, now_ns: int) -> list[Work]:
+    def verdict(self, told: GiveVerdict, sysid: int, now_ns: int) -> list[Work]:
         """To the operator who asked; an accepted request is an operation, which all are told."""
         request_id, requests = told.request_id, self._requests
         asked = requests.get(request_id)
@@ -348,7 +348,7 @@ class Operators:
         """Once a second: what has ended because nothing more came."""
         return self._streams.second(now_ns)
 
-    def tell(self, told: Tell) -> list[Work]:
+    def tell(self, told: TellOperator) -> list[Work]:
         return [Emit(told.event, self._requests.get(told.request_id).client)]
 
     def missing_messages(self, telemetry: Telemetry, now_ns: int) -> list[CommandLong]:
@@ -371,4 +371,4 @@ def _end_of_stream(vehicle: int) -> ipc.Ask:
 
 def _done(request_id: int, sentence: str) -> list[Work]:
     complete = Outcome(request_id, OutcomeKind.COMPLETE, None, sentence or "complete")
-    return [Decide(request_id, Ruling.ACCEPTED), complete]
+    return [GiveVerdict(request_id, Ruling.ACCEPTED), complete]

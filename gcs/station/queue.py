@@ -6,7 +6,7 @@ are still being carried out waits until all of them are.  So the gate is never a
 the middle of its own answer, and the record tells transitions in the order they happened.
 
 Each item has an owner: a vehicle, by its slot, or the station.  What an item leads to has the same
-owner; `For` gives work to another one.
+owner; `ForOwner` gives work to another one.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import msgspec
 from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.gate.inputs import ConditionChanged, MessageSeen, PositionSeen
 from gcs.session.effects import Effect, Emit
-from gcs.session.work import GATE_ANSWERED, STATION, For, GateAnswered, ToGate, Work
+from gcs.session.work import GATE_ANSWERED, STATION, ForOwner, GateAnswered, GateInput, Work
 
 NOTICED: Final[list[Work]] = [GATE_ANSWERED]
 NOTICE_ONLY: Final = frozenset({PositionSeen, MessageSeen, ConditionChanged})
@@ -30,7 +30,7 @@ EFFECT_TYPES: Final = frozenset(get_args(Effect))
 
 Step: TypeAlias = Callable[[Work, int, int], Sequence[Work]]
 """Does one item of an owner at `now_ns` and returns what follows from it.  What follows from a
-`ToGate` of a vehicle holds one `GateAnswered`, behind the gate's own effects."""
+`GateInput` of a vehicle holds one `GateAnswered`, behind the gate's own effects."""
 
 
 class _OwnedAgain(msgspec.Struct, frozen=True, gc=False):
@@ -44,7 +44,7 @@ class WorkQueue:
 
     def __init__(self, step: Step) -> None:
         self._step = step
-        self._postponed: list[For] = []
+        self._postponed: list[ForOwner] = []
         self.effects: list[Work] = []
         """Those so far, in the order in which the shell is to perform them.  Between two calls of
         `run` one that leads to nothing may be appended; `len` of it is a mark for `back_to`."""
@@ -71,7 +71,7 @@ class WorkQueue:
                 agenda += reversed(step(item, owner, now_ns))
             elif kind in EFFECT_TYPES:
                 effects.append(item)
-            elif isinstance(item, For):
+            elif isinstance(item, ForOwner):
                 agenda.append(_OwnedAgain(owner))
                 agenda += reversed(item.work)
                 owner = item.owner
@@ -79,12 +79,12 @@ class WorkQueue:
                 gate_answers = False
                 agenda += reversed(postponed)
                 postponed.clear()
-            elif kind is ToGate and owner != STATION:
+            elif kind is GateInput and owner != STATION:
                 if gate_answers:
-                    postponed.append(For(owner, (item,)))
+                    postponed.append(ForOwner(owner, (item,)))
                 else:
                     answer = step(item, owner, now_ns)
-                    if answer == NOTICED and type(cast("ToGate", item).given) in NOTICE_ONLY:
+                    if answer == NOTICED and type(cast("GateInput", item).given) in NOTICE_ONLY:
                         continue
                     worked = gate_answers = True
                     agenda += reversed(answer)

@@ -13,7 +13,7 @@ from gcs.gate.airspace.projection import Projection
 from gcs.gate.airspace.separation import Track, closest_approach, is_too_close
 from gcs.gate.condition import Condition
 from gcs.gate.policy.policy import SeparationLimits
-from gcs.session.work import For, Work
+from gcs.session.work import ForOwner, Work
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.gate_port import condition
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -51,7 +51,7 @@ class Separation:
             if before != bool(close):
                 name = f"vehicle {vehicles.of_owner(others).sysid}: " if text else ""
                 changed = condition(Condition.TOO_CLOSE, bool(close), name + text)
-                work.append(For(mine, (changed,)))
+                work.append(ForOwner(mine, (changed,)))
         return work
 
     def _too_close(self, one: Vehicle, other: Vehicle, was: bool, now_ns: int) -> str:

@@ -11,20 +11,20 @@ from typing import assert_never
 
 from gcs import ipc
 from gcs.bridge.effects import (
-    Answers,
+    AboutVehicle,
     AsksForStreams,
     AsksPlan,
     AsksVehicle,
     ChangesRallyPoints,
+    ClientRefused,
+    ClientRequest,
+    ForwardToLink,
+    ForwardToVehicle,
     Joined,
+    LogLine,
     Lost,
-    Notes,
-    OfVehicle,
-    Refuses,
-    Says,
+    Reply,
     StopsPlan,
-    ToLink,
-    ToVehicle,
 )
 from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
@@ -67,9 +67,10 @@ from gcs.session.work import (
     AskMission,
     AskOrbit,
     CheckStart,
-    Decide,
     EndSession,
-    For,
+    ForOwner,
+    GateInput,
+    GiveVerdict,
     Log,
     OrbitSample,
     PlaceFence,
@@ -77,8 +78,7 @@ from gcs.session.work import (
     SnapshotDue,
     StopTransfer,
     StreamOver,
-    Tell,
-    ToGate,
+    TellOperator,
     Work,
 )
 from gcs.station.bridge_port import BridgePort
@@ -318,17 +318,17 @@ class Session:
         """Hand one item of work to the part that it is for; `owner` is whose it is."""
         vehicle = self._vehicles.of_owner(owner)
         match item:
-            case ToGate(Tick()) if owner == STATION:
+            case GateInput(Tick()) if owner == STATION:
                 one = self._operators.in_control
                 client = 0 if one is None else one.client
                 orbits = self._vehicles.each(lambda v: v.orbit_sample(client, now_ns))
                 return [*orbits, *self._vehicles.to_all(item)]
-            case ToGate() if owner == STATION:
+            case GateInput() if owner == STATION:
                 return self._vehicles.to_all(item)
-            case ToGate(given) if type(given) is PositionSeen:  # nearly all of them
+            case GateInput(given) if type(given) is PositionSeen:  # nearly all of them
                 work = vehicle.ask_gate(given, now_ns)
                 return work + self._separation.moved(self._vehicles, owner, now_ns)
-            case ToGate(given):
+            case GateInput(given):
                 answered = self._bridge.before_gate(given, vehicle.sysid, now_ns)
                 return [*answered, *vehicle.ask_gate(given, now_ns)]
             case Send(message):
@@ -377,15 +377,15 @@ class Session:
             case StreamOver(sysid, request_id):
                 slot = self._vehicles.slot_of(sysid)
                 end = AskGate(request_id, EndStream())
-                return [For(FIRST_SLOT if slot is None else slot, (end,))]
-            case Decide():
+                return [ForOwner(FIRST_SLOT if slot is None else slot, (end,))]
+            case GiveVerdict():
                 return self._operators.verdict(item, vehicle.sysid, now_ns)
-            case Tell():
+            case TellOperator():
                 return self._operators.tell(item)
             case EndSession(reason):
                 # After it, as the lost operators' requests end there.
                 held = self._bridge.bridge.leave()
-                return [For(STATION, (*self._ending.begin(reason, now_ns), *held))]
+                return [ForOwner(STATION, (*self._ending.begin(reason, now_ns), *held))]
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
@@ -396,12 +396,19 @@ class Session:
                     return stops
                 return [Emit(self._snapshot(now_ns)), *stops]
             case (
-                Joined() | Lost() | Says() | Refuses() | AsksPlan() | StopsPlan() | Notes() | Emit()
+                Joined()
+                | Lost()
+                | ClientRequest()
+                | ClientRefused()
+                | AsksPlan()
+                | StopsPlan()
+                | LogLine()
+                | Emit()
             ):
                 return self._bridge.as_operator(item, vehicle, now_ns)
-            case OfVehicle(sysid, effects):
+            case AboutVehicle(sysid, effects):
                 slot = self._vehicles.slot_of(sysid)
-                return [For(FIRST_SLOT if slot is None else slot, effects)]
+                return [ForOwner(FIRST_SLOT if slot is None else slot, effects)]
             case ChangesRallyPoints() if owner == STATION:
                 return self._vehicles.each(lambda each: each.rally_points_change(now_ns))
             case ChangesRallyPoints():
@@ -410,7 +417,7 @@ class Session:
                 return self._vehicles.to_all(item)
             case AsksForStreams(msgids):
                 return vehicle.ask_for_streams(msgids, now_ns)
-            case ToVehicle() | AsksVehicle() | ToLink() | Answers():
+            case ForwardToVehicle() | AsksVehicle() | ForwardToLink() | Reply():
                 links = self._vehicles.links if owner == STATION else vehicle.links
                 return [*self._bridge.pass_on(item, links, now_ns)]
             case _:
@@ -431,7 +438,7 @@ class Session:
             work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
         wanted = self._operators.missing_messages(first.telemetry, now_ns)
         work += self._vehicles.each(lambda each: each.second(now_ns))
-        return [*work, For(FIRST_SLOT, tuple(first.send_own(wanted, now_ns)))]
+        return [*work, ForOwner(FIRST_SLOT, tuple(first.send_own(wanted, now_ns)))]
 
     def _remind(self) -> list[Work]:
         return self._vehicles.each(lambda each: each.remind())

@@ -6,7 +6,7 @@ from gcs.gate import inputs
 from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, SecondDue, SnapshotDue, ToGate, Work
+from gcs.session.work import GateInput, Log, SecondDue, SnapshotDue, Work
 from gcs.vehicle.gate_port import condition
 
 TICK_NS = 50_000_000
@@ -39,7 +39,7 @@ class Ticks:
             return []
         lateness_ns = now_ns - self.next_ns
         self.next_ns += TICK_NS * (lateness_ns // TICK_NS + 1)
-        work: list[Work] = [ToGate(inputs.Tick(lateness_ns))]
+        work: list[Work] = [GateInput(inputs.Tick(lateness_ns))]
         if lateness_ns > self._late_ns or self._told_late or self._number % TICKS_A_SECOND == 0:
             work += self._judge_lateness(lateness_ns, now_ns)
         if self._number % TICKS_A_SECOND == 0:

@@ -19,7 +19,7 @@ from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
 from gcs.session.speedup_waits import Times
-from gcs.session.work import STATION, For, Log, ToGate, Work
+from gcs.session.work import STATION, ForOwner, GateInput, Log, Work
 from gcs.vehicle.gate_port import OF_THE_STATION
 from gcs.vehicle.interpreted_messages import is_autopilot
 from gcs.vehicle.talk.liveness import LINK_SILENT_NS
@@ -122,11 +122,11 @@ class Vehicles:
     def each(self, work: Callable[[Vehicle], Sequence[Work]]) -> list[Work]:
         """The same of every vehicle, in its own name."""
         done = ((slot, tuple(work(vehicle))) for slot, vehicle in enumerate(self._all))
-        return [For(slot, items) for slot, items in done if items]
+        return [ForOwner(slot, items) for slot, items in done if items]
 
     def to_all(self, item: Work) -> list[Work]:
         """The same item for every vehicle."""
-        return [For(slot, (item,)) for slot in range(len(self._all))]
+        return [ForOwner(slot, (item,)) for slot in range(len(self._all))]
 
     # ------------------------------------------------------------------------------ frames
 
@@ -159,7 +159,7 @@ class Vehicles:
         work = vehicle.frames.counted(link, frame, now_ns)
         if frame.msgid == MsgId.HEARTBEAT:
             work = [*self._twice(vehicle, link, frame, now_ns), *work]
-        return [For(slot, tuple(work))] if work else []
+        return [ForOwner(slot, tuple(work))] if work else []
 
     def frame(self, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """A good frame of anybody on a vehicle's link."""
@@ -173,7 +173,7 @@ class Vehicles:
         owner = slot or FIRST
         twice = self._twice(self._all[owner], link, frame, now_ns) if slot is not None else []
         work = [*twice, *self._all[owner].frames.frame(link, frame, now_ns)]
-        return [For(owner, tuple(work))] if work else []
+        return [ForOwner(owner, tuple(work))] if work else []
 
     def _twice(self, vehicle: Vehicle, link: int, frame: Frame, now_ns: int) -> Sequence[Work]:
         """A vehicle has two links, or two vehicles have one number, and then nothing that is told
@@ -210,11 +210,11 @@ class Vehicles:
         vehicle = Vehicle(config, self._policy, self._times, now_ns, shown=False)
         self._all.append(vehicle)
         wrong: list[Work] = [
-            ToGate(inputs.ConditionChanged(name, True, text))
+            GateInput(inputs.ConditionChanged(name, True, text))
             for name, text in self.first.gate.reasons
             if name in OF_THE_STATION
         ]
-        return [For(slot, (*vehicle.frames.frame(link, frame, now_ns), *wrong))]
+        return [ForOwner(slot, (*vehicle.frames.frame(link, frame, now_ns), *wrong))]
 
     # ---------------------------------------------------------------------------- requests
 

@@ -21,7 +21,15 @@ from gcs.gate.states import State
 from gcs.report import FenceShape, StopItem
 from gcs.session import announcements
 from gcs.session.effects import Effect, Record
-from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
+from gcs.session.work import (
+    GATE_ANSWERED,
+    CheckStart,
+    GateInput,
+    GiveVerdict,
+    Log,
+    PlaceFence,
+    Work,
+)
 from gcs.vehicle.talk.telemetry import Telemetry
 
 NOT_FLYING: Final = frozenset({State.NO_VEHICLE, State.STALE, State.GROUNDED})
@@ -61,9 +69,9 @@ class GatePort:
             if not before.heard_before or each[0] in OF_THE_STATION
         ]
         return [
-            ToGate(inputs.ClimbEndSeen(telemetry.autopilot.climb_ends_within_m)),
-            *(ToGate(inputs.ConditionChanged(name, True, text)) for name, text in conditions),
-            *([ToGate(inputs.OperatorLost("nobody is left"))] if before.operator_lost else []),
+            GateInput(inputs.ClimbEndSeen(telemetry.autopilot.climb_ends_within_m)),
+            *(GateInput(inputs.ConditionChanged(name, True, text)) for name, text in conditions),
+            *([GateInput(inputs.OperatorLost("nobody is left"))] if before.operator_lost else []),
         ]
 
     def lose_vehicle(self) -> list[Work]:
@@ -122,7 +130,7 @@ class GatePort:
         match effect:
             case effects.Verdict(request_id, _, request, ruling, refusal, _, evidence):
                 goal_ned = request.goal_ned if isinstance(request, GoTo) else None
-                return [Decide(request_id, ruling, refusal, evidence, goal_ned)]
+                return [GiveVerdict(request_id, ruling, refusal, evidence, goal_ned)]
             case effects.Transition():
                 goal_ned = self.gate.active_goal_ned
                 wrong = announcements.conditions(self.gate)
@@ -162,7 +170,7 @@ class GatePort:
         )
         fence = announcements.fence(verifier.zones, telemetry.origin, self.policy)
         return [
-            ToGate(inputs.VerifierChanged(verifier)),
+            GateInput(inputs.VerifierChanged(verifier)),
             *(fence if self._shown else ()),
             *([] if telemetry.pos_ned is None else self._breached(telemetry.pos_ned)),
         ]
@@ -201,6 +209,6 @@ def _never_placed(verifier: Verifier) -> bool:
     return verifier.home_ned is not None and unplaced is not None and unplaced.code is Code.POLICY
 
 
-def condition(name: Condition, active: bool, text: str) -> ToGate:
+def condition(name: Condition, active: bool, text: str) -> GateInput:
     """Something is wrong, or no longer."""
-    return ToGate(inputs.ConditionChanged(name, active, text))
+    return GateInput(inputs.ConditionChanged(name, active, text))

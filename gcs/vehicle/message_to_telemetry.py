@@ -18,7 +18,7 @@ from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import autopilot_of, mode_of
 from gcs.report import GeodeticItem, PoseItem
 from gcs.session.effects import Record
-from gcs.session.work import PlaceFence, ToGate
+from gcs.session.work import GateInput, PlaceFence
 from gcs.vehicle.gate_port import condition
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire import messages as m
@@ -50,7 +50,7 @@ UPDATE_MESSAGES: Final = frozenset(
 )
 """What `updates` has a case for."""
 
-Update: TypeAlias = ToGate | Record | PlaceFence
+Update: TypeAlias = GateInput | Record | PlaceFence
 
 
 def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[Update]:
@@ -62,7 +62,7 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
             mode = mode_of(telemetry.autopilot, message.base_mode, message.custom_mode)
             telemetry.mode_name, telemetry.custom_mode = mode.name, message.custom_mode
             failing = message.system_status in (MavState.CRITICAL, MavState.EMERGENCY)
-            yield ToGate(inputs.HeartbeatSeen(telemetry.armed, mode.meaning, mode.name, failing))
+            yield GateInput(inputs.HeartbeatSeen(telemetry.armed, mode.meaning, mode.name, failing))
             text = f"the vehicle says {MavState(message.system_status).name}" if failing else ""
             yield condition(Condition.VEHICLE_FAILSAFE_ACTIVE, failing, text)
         case m.ExtendedSysState():
@@ -71,7 +71,7 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
                 telemetry.landed = LandedState(message.landed_state)
             except ValueError:
                 telemetry.landed = LandedState.UNDEFINED
-            yield ToGate(inputs.LandedSeen(telemetry.landed))
+            yield GateInput(inputs.LandedSeen(telemetry.landed))
         case m.LocalPositionNed():
             yield from _local_position(message, telemetry, now_ns)
         case m.Attitude() if _finite(message.roll, message.pitch, message.yaw):
@@ -104,9 +104,9 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
         case m.Timesync() if message.tc1:
             telemetry.delay.answered(message.ts1, now_ns)
         case m.CameraImageCaptured():
-            yield ToGate(inputs.PhotoSeen(message.image_index, message.capture_result == 1))
+            yield GateInput(inputs.PhotoSeen(message.image_index, message.capture_result == 1))
         case m.CameraFeedback():
-            yield ToGate(inputs.PhotoSeen(message.img_idx, True))
+            yield GateInput(inputs.PhotoSeen(message.img_idx, True))
         case m.MissionCurrent():
             telemetry.mission_seq = message.seq
         case m.MissionItemReached():
@@ -140,7 +140,9 @@ def _local_position(
     telemetry.stamps.take(message.time_boot_ms)
     telemetry.pos_ned, telemetry.v_ned, telemetry.position_ns = pos_ned, v_ned, now_ns
     return (
-        ToGate(inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, restarted, late_ns / 1e9)),
+        GateInput(
+            inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, restarted, late_ns / 1e9)
+        ),
         Record(PoseItem(telemetry.sysid, pos_ned, v_ned, telemetry.q_ned_from_frd)),
     )
 
@@ -201,11 +203,11 @@ def _pair_disagreement_m(
     return math.hypot(north_m - telemetry.pos_ned[0], east_m - telemetry.pos_ned[1])
 
 
-def _home_in_local_frame(telemetry: Telemetry) -> Iterator[ToGate]:
+def _home_in_local_frame(telemetry: Telemetry) -> Iterator[GateInput]:
     """Local and global meet at the origin; HOME_POSITION's own x, y, z are not to be trusted."""
     if telemetry.origin is None or telemetry.home is None:
         return
     telemetry.home_ned = Projection(telemetry.origin, telemetry.autopilot.name).ned_from_geodetic(
         *telemetry.home
     )
-    yield ToGate(inputs.HomeSeen(telemetry.home_ned))
+    yield GateInput(inputs.HomeSeen(telemetry.home_ned))

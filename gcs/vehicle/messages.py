@@ -15,7 +15,7 @@ from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.session import announcements
 from gcs.session.effects import Record
-from gcs.session.work import Log, PlaceFence, ToGate, Work
+from gcs.session.work import GateInput, Log, PlaceFence, Work
 from gcs.vehicle import record_items
 from gcs.vehicle.health.position_latency import Delay
 from gcs.vehicle.interpreted_messages import (
@@ -113,12 +113,12 @@ class VehicleMessages:
             telemetry.restart_known = True
         for update in updates(message, telemetry, now_ns):
             match update:
-                case ToGate(inputs.PositionSeen(reset=reset)):
+                case GateInput(inputs.PositionSeen(reset=reset)):
                     telemetry.restart_known = False
                     work.append(update)
                     if reset:
                         work = [*self._parts.missions.forget(), *work, *accuracy(telemetry)]
-                case ToGate(inputs.HomeSeen()) | PlaceFence():
+                case GateInput(inputs.HomeSeen()) | PlaceFence():
                     work.append(update)
                     work += self._parts.returns.placed(telemetry)
                     work += self._parts.look_at_fence(telemetry)

@@ -27,7 +27,7 @@ from gcs.orbit.guidance import Guidance, Place
 from gcs.session.effects import Emit
 from gcs.session.requests import source_of
 from gcs.session.speedup_waits import Times
-from gcs.session.work import AskGate, AskOrbit, Decide, Log, OrbitSample, Work
+from gcs.session.work import AskGate, AskOrbit, GiveVerdict, Log, OrbitSample, Work
 from gcs.vehicle.talk.telemetry import Telemetry
 
 NODE: Final = "orbit"
@@ -68,7 +68,7 @@ class Orbits:
         orbit = self._orbit(asked, telemetry, gate, policy, now_ns)
         if isinstance(orbit, Refusal):
             text = f"orbit: refused {orbit.code.value}: {orbit.sentence}"
-            refused = Decide(asked.request_id, Ruling.REFUSED, orbit)
+            refused = GiveVerdict(asked.request_id, Ruling.REFUSED, orbit)
             return [refused, Log(Level.WARNING, NODE, text)]
         work: list[Work] = []
         if orbit is not None:

@@ -18,7 +18,7 @@ from gcs.protocol.vehicle_control import VehicleControl
 from gcs.report import ParamItem
 from gcs.session.effects import Record
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import GateInput, Log, Work
 from gcs.vehicle.gate_port import GatePort, condition
 from gcs.vehicle.health.limit_monitors import Watch
 from gcs.vehicle.missions.jobs.job import VehicleView
@@ -124,7 +124,7 @@ class VehicleParts:
                     telemetry.return_up_m, telemetry.return_told = up_m, True
                     if up_m is not None:
                         telemetry.return_void = False
-                        work.append(ToGate(inputs.ReturnHeightSeen(up_m)))
+                        work.append(GateInput(inputs.ReturnHeightSeen(up_m)))
                         work += self.returns.height_known(telemetry)
                 case settings.ReturnTypeKnown(kind):
                     work += self.returns.returns_by(kind, telemetry)
@@ -132,7 +132,7 @@ class VehicleParts:
                     telemetry.acceptance_m = radius_m
                     work += accuracy(telemetry)
                 case settings.ClimbEndKnown(within_m):
-                    work.append(ToGate(inputs.ClimbEndSeen(within_m)))
+                    work.append(GateInput(inputs.ClimbEndSeen(within_m)))
                 case settings.FailsafesKnown(weak, every):
                     telemetry.failsafes = every
                     head = "the vehicle's own failsafes: "
@@ -159,7 +159,7 @@ class VehicleParts:
         ends_m = telemetry.autopilot.climb_ends_within_m
         return [
             *self.missions.forget(),
-            ToGate(inputs.ClimbEndSeen(ends_m)),
+            GateInput(inputs.ClimbEndSeen(ends_m)),
             *accuracy(telemetry),
         ]
 
@@ -222,4 +222,4 @@ def accuracy(telemetry: Telemetry) -> list[Work]:
     if seen == telemetry.accuracy_told:
         return []
     telemetry.accuracy_told = seen
-    return [ToGate(seen)]
+    return [GateInput(seen)]

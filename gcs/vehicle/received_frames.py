@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from gcs.gate import inputs
-from gcs.session.work import ToGate, Work
+from gcs.session.work import GateInput, Work
 from gcs.vehicle.interpreted_messages import INTERPRETED
 from gcs.vehicle.messages import VehicleMessages
 from gcs.vehicle.parts import VehicleParts
@@ -19,7 +19,7 @@ from gcs.wire import messages as m
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 
-ALIVE: Final[Sequence[Work]] = (ToGate(inputs.MessageSeen()),)
+ALIVE: Final[Sequence[Work]] = (GateInput(inputs.MessageSeen()),)
 """What the gate is to hear of any frame of the autopilot, now and then."""
 MOST_IN_TURN: Final = 100
 """Frames that are counted as one: fewer than half of the ring of sequence numbers."""

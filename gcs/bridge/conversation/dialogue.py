@@ -26,7 +26,7 @@ from gcs.bridge.conversation.answers import (
 from gcs.bridge.conversation.pending_requests import From, Pending, Told
 from gcs.bridge.conversation.recent_texts import RecentTexts
 from gcs.bridge.conversation.repeated_requests import GUIDED_ITEM, command_of, key_of
-from gcs.bridge.effects import Answers, BridgeEffect, Refuses, Says
+from gcs.bridge.effects import BridgeEffect, ClientRefused, ClientRequest, Reply
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.wire.ids import Result
@@ -122,7 +122,7 @@ class Dialogue:
         that is under way."""
         arming = self._arming() if pending.rest and ask.word == "arm" else None
         if arming is None:
-            return [Says(self.client, self._open(pending, ask))]
+            return [ClientRequest(self.client, self._open(pending, ask))]
         number = self.number()
         self._pending[number] = pending
         self._with.setdefault(arming, []).append(number)
@@ -145,7 +145,7 @@ class Dialogue:
         if repeated is not None:
             return repeated
         pending = Pending(asked_by, command, key, (), name, "")
-        return [Refuses(self.client, self._open(pending, ipc.Ask(0, name.lower())), refusal)]
+        return [ClientRefused(self.client, self._open(pending, ipc.Ask(0, name.lower())), refusal)]
 
     def forget(self) -> None:
         """Somebody else has asked for something: what was accepted may hold no more."""
@@ -206,7 +206,7 @@ class Dialogue:
         """One sample of a setpoint stream; it has no answer of its own."""
         self._streams_from, self._told = asked_by, None
         self._orbit_replaced()
-        return [Says(self.client, msgspec.structs.replace(sample, vehicle=self.vehicle))]
+        return [ClientRequest(self.client, msgspec.structs.replace(sample, vehicle=self.vehicle))]
 
     # ---------------------------------------------------------------------------- answers
 
@@ -300,7 +300,7 @@ class Dialogue:
             told += self.text(to, Level.INFO, f"orbit: {event.note}", now_ns)
         self._orbit_note = event.note
         status = orbit_status(event)
-        return told if status is None else [*told, Answers(to.link, to.addressed, status)]
+        return told if status is None else [*told, Reply(to.link, to.addressed, status)]
 
     def _ending(self, event: ipc.EndingEvent, now_ns: int) -> list[BridgeEffect]:
         pending = self._pending.pop(event.id, None)
@@ -363,10 +363,10 @@ class Dialogue:
         return [self._acknowledge(pending.asked_by, pending.command, result, code)]
 
     @staticmethod
-    def _acknowledge(to: From, command: int, result: int, code: Code | None = None) -> Answers:
+    def _acknowledge(to: From, command: int, result: int, code: Code | None = None) -> Reply:
         if command == GUIDED_ITEM:
-            return Answers(to.link, to.addressed, item_acknowledgement(result, to.source))
-        return Answers(to.link, to.addressed, acknowledgement(command, result, to.source, code))
+            return Reply(to.link, to.addressed, item_acknowledgement(result, to.source))
+        return Reply(to.link, to.addressed, acknowledgement(command, result, to.source, code))
 
     def text(
         self, to: From, level: Level, text: str, now_ns: int, plan: bytes = b""
@@ -377,8 +377,7 @@ class Dialogue:
             return []
         self._next_text = self._next_text % 0xFFFF + 1
         return [
-            Answers(to.link, to.addressed, message)
-            for message in texts(level, text, self._next_text)
+            Reply(to.link, to.addressed, message) for message in texts(level, text, self._next_text)
         ]
 
 

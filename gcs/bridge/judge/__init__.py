@@ -1,5 +1,5 @@
 """What is done with one frame of a client that is for the vehicle, or for everybody.
 
-`judge.py` tells by the kind of its message or command (`classes/`): it is forwarded, refused, or
+`judge.py` tells by the kind of its message or command (`catalog/`): it is forwarded, refused, or
 given to one of the others.
 """

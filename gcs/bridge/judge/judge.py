@@ -1,6 +1,6 @@
 """The kind of a client's frame decides what is done with it: every kind, once.
 
-By its message or command (`classes/`) it is forwarded, refused, or given to one of the others here:
+By its message or command (`catalog/`) it is forwarded, refused, or given to one of the others here:
 what would move the vehicle (`motion.py`), change its set-up (`set_up.py`), or is about plans
 (`plans.py`).
 """
@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Final
 
 from gcs.bridge.catalog import Kind, Row, command_row, message_row
-from gcs.bridge.effects import AsksForStreams, AsksVehicle, BridgeEffect, ToVehicle
+from gcs.bridge.effects import AsksForStreams, AsksVehicle, BridgeEffect, ForwardToVehicle
 from gcs.bridge.judge.motion import MotionJudge
 from gcs.bridge.judge.plans import PlanJudge
 from gcs.bridge.judge.received import Judged, Received, refuse
@@ -133,7 +133,7 @@ class Judge:
     def _forward(self, given: Received, message: Message | None, row: Row) -> Judged:
         """What is harmless, but for the rates that the gate needs and those that fill the link."""
         if not isinstance(message, CommandLong | CommandInt | RequestDataStream):
-            return Judged(False, [ToVehicle(given.frame.raw)])
+            return Judged(False, [ForwardToVehicle(given.frame.raw)])
         instead: Message | Refusal
         again: list[BridgeEffect] = []
         obeyed = True
@@ -150,7 +150,7 @@ class Judge:
             return refuse(given, message, row, instead)
         self._thinned.asked(given.by.link, given.by.addressed, message, obeyed=obeyed)
         if instead is message:
-            return Judged(False, [ToVehicle(given.frame.raw), *again])
+            return Judged(False, [ForwardToVehicle(given.frame.raw), *again])
         return Judged(False, [AsksVehicle(given.by.source, instead), *again])
 
     def _pointing(self, given: Received, message: Message | None, row: Row) -> Judged:
@@ -158,7 +158,7 @@ class Judge:
         seen = given.look()
         if seen is not None and not seen.in_control:
             return refuse(given, message, row, POINTED_BY_ANOTHER)
-        return Judged(False, [ToVehicle(given.frame.raw)])
+        return Judged(False, [ForwardToVehicle(given.frame.raw)])
 
     def client_lost(
         self, client: int, link: int, own: Address, vehicle: Address

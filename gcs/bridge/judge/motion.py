@@ -7,7 +7,7 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.catalog import Row
-from gcs.bridge.effects import BridgeEffect, ToVehicle
+from gcs.bridge.effects import BridgeEffect, ForwardToVehicle
 from gcs.bridge.judge.climbs import HEIGHT_WRITTEN, asks_for_height, climbs
 from gcs.bridge.judge.received import Judged, Received, refuse
 from gcs.bridge.judge.set_up import SetUpJudge
@@ -85,7 +85,7 @@ class MotionJudge:
         if chosen is None:
             return []
         self._mission_mode.sent(given.now_ns)
-        return [*chosen, ToVehicle(given.frame.raw)]
+        return [*chosen, ForwardToVehicle(given.frame.raw)]
 
     def _meant(
         self, given: Received, message: Message, row: Row, meaning: Settled, seen: Seen
@@ -105,7 +105,7 @@ class MotionJudge:
             case Sample():
                 return Judged(False, client.dialogue.stream(given.by, stream_of(meaning)))
             case Forward():
-                return Judged(False, [ToVehicle(given.frame.raw)])
+                return Judged(False, [ForwardToVehicle(given.frame.raw)])
             case Reject(refusal):
                 return refuse(given, message, row, refusal)
 

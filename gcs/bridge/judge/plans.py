@@ -8,7 +8,14 @@ from typing import Final
 from gcs import ipc
 from gcs.bridge.catalog import Row
 from gcs.bridge.client_plan import ClientPlan
-from gcs.bridge.effects import Answers, AsksPlan, BridgeEffect, Refuses, StopsPlan, ToVehicle
+from gcs.bridge.effects import (
+    AsksPlan,
+    BridgeEffect,
+    ClientRefused,
+    ForwardToVehicle,
+    Reply,
+    StopsPlan,
+)
 from gcs.bridge.judge.received import Judged, Received
 from gcs.bridge.judge.set_up import SetUpJudge
 from gcs.bridge.peers.client import Exchange
@@ -44,7 +51,7 @@ class PlanJudge:
             if _takes_off_nothing(given, message, seen) and not client.plans.busy:
                 kind = message.mission_type
                 done = acknowledgement(given.by.source, MissionResult.ACCEPTED, kind)
-                return Judged(False, [Answers(given.by.link, given.by.addressed, done)])
+                return Judged(False, [Reply(given.by.link, given.by.addressed, done)])
             judged = None if mission_alone else self._set_up.refuses(given, message, row, seen)
             if judged is not None:
                 return judged
@@ -66,7 +73,7 @@ class PlanJudge:
             if not again and self._downloads.answers(reader, given.now_ns):
                 kind = getattr(message, "mission_type", MissionType.MISSION)
                 no = acknowledgement(given.by.source, MissionResult.ERROR, kind)
-                told.append(Answers(given.by.link, given.by.addressed, no))
+                told.append(Reply(given.by.link, given.by.addressed, no))
             return Judged(True, told)
         effects = client.plans.handle(message, given.by, given.now_ns, mission_alone=mission_alone)
         refused = any(
@@ -115,7 +122,7 @@ def of_plan(
     done: list[BridgeEffect] = []
     for effect in effects:
         match effect:
-            case Answers():
+            case Reply():
                 done.append(effect)
             case plan_effects.Upload(plan):
                 done.append(_ask_plan(client, "mission_upload", plan.source, plan.kind, plan))
@@ -124,10 +131,10 @@ def of_plan(
             case plan_effects.Withdraw(reason):
                 done.append(StopsPlan(client.number, client.plan_ask, reason))
             case plan_effects.Pass() if frame is not None:
-                done.append(ToVehicle(frame.raw))
+                done.append(ForwardToVehicle(frame.raw))
             case plan_effects.Refused(name, refusal):
                 ask = ipc.Ask(client.dialogue.number(), name.lower())  # answered already
-                done.append(Refuses(client.number, ask, refusal))
+                done.append(ClientRefused(client.number, ask, refusal))
     return done
 
 

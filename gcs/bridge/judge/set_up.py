@@ -5,12 +5,12 @@ from __future__ import annotations
 from gcs.bridge.catalog import Row
 from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.effects import (
-    Answers,
     AsksVehicle,
     BridgeEffect,
     ChangesRallyPoints,
-    Notes,
-    ToVehicle,
+    ForwardToVehicle,
+    LogLine,
+    Reply,
 )
 from gcs.bridge.judge.received import Judged, Received, refuse
 from gcs.bridge.setup_policy.guard import Guard
@@ -58,9 +58,9 @@ class SetUpJudge:
             case Allowed(note):
                 self._log_read |= isinstance(message, LogRequestData)
                 self._log_sent |= _is_command(message, Cmd.LOGGING_START)
-                notes = [Notes(Level.INFO, f"{given.client.name}: {note}")] if note else []
+                notes = [LogLine(Level.INFO, f"{given.client.name}: {note}")] if note else []
                 rally = [ChangesRallyPoints()] if isinstance(message, RallyPoint) else []
-                return Judged(False, [*notes, ToVehicle(given.frame.raw), *rally])
+                return Judged(False, [*notes, ForwardToVehicle(given.frame.raw), *rally])
             case Refused():
                 return _refuse(given, message, row, judged)
 
@@ -77,7 +77,7 @@ class SetUpJudge:
     def parameter(self, message: ParamValue, autopilot: str, now_ns: int) -> list[BridgeEffect]:
         """PARAM_VALUE of the vehicle's autopilot: what has changed, for the log."""
         changed = self._guard_of(autopilot).heard(message, now_ns)
-        return [] if changed is None else [Notes(changed.level, changed.text)]
+        return [] if changed is None else [LogLine(changed.level, changed.text)]
 
     def armed(self, own: Address, vehicle: Address) -> list[BridgeEffect]:
         """The vehicle is armed: a log that a client began to read on the ground is not read on,
@@ -92,7 +92,7 @@ class SetUpJudge:
         if sent:
             ends.append(_command(Cmd.LOGGING_STOP, vehicle))
         text = "the vehicle is armed: the reading of its log is ended (policy: bridge.downloads)"
-        return [*(AsksVehicle(own, end) for end in ends), Notes(Level.INFO, text)]
+        return [*(AsksVehicle(own, end) for end in ends), LogLine(Level.INFO, text)]
 
     def _guard_of(self, autopilot: str) -> Guard:
         if self._guard is None or self._guards != autopilot:
@@ -116,7 +116,7 @@ def _refuse(given: Received, message: Message, row: Row, judged: Refused) -> Jud
     """With what the client is answered, and what the vehicle is asked for in its place."""
     by = given.by
     refused = refuse(given, message, row, judged.refusal)
-    to_client = [Answers(by.link, by.addressed, each) for each in judged.answers]
+    to_client = [Reply(by.link, by.addressed, each) for each in judged.answers]
     to_vehicle = [AsksVehicle(by.source, each) for each in judged.ask_vehicle]
     return Judged(True, [*refused.effects, *to_client, *to_vehicle])
 

@@ -17,7 +17,7 @@ from gcs import ipc
 from gcs.bridge.conversation.answers import texts
 from gcs.bridge.conversation.dialogue import Dialogue
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import BridgeEffect, Notes, OfVehicle, Says
+from gcs.bridge.effects import AboutVehicle, BridgeEffect, ClientRequest, LogLine
 from gcs.bridge.plans.server import PlanServer
 from gcs.bridge.translate.chosen_before_arming import (
     KEPT_NS,
@@ -186,7 +186,7 @@ class Exchange:
     def _choose(self, chosen: Chosen, what: str, by: From, now_ns: int) -> list[BridgeEffect]:
         self._chosen, self._chosen_by = chosen, by
         text = f"{chosen.name}: {what} when you arm, within {KEPT_NS / 1e9:.0f} s"
-        note = Notes(Level.INFO, f"{self.name}: {text}")
+        note = LogLine(Level.INFO, f"{self.name}: {text}")
         return [note, *self.dialogue.text(by, Level.INFO, text, now_ns)]
 
     def joined_with_choice(
@@ -209,7 +209,7 @@ class Exchange:
             return []
         text = f"{self._chosen.name}: forgotten: {why}"
         self._chosen = None
-        note = Notes(Level.INFO, f"{self.name}: {text}")
+        note = LogLine(Level.INFO, f"{self.name}: {text}")
         return [note, *self.dialogue.text(self._chosen_by, Level.INFO, text, now_ns)]
 
     def control_lost(self, why: str, now_ns: int) -> list[BridgeEffect]:
@@ -235,9 +235,9 @@ class Exchange:
         self._back_ns = None
         hold = ipc.Ask(self.dialogue.number(), "hold", vehicle=self.vehicle)
         text = f"{self.name}: {MISSION_MODE} is taken back: the mission was not started"
-        return [Notes(Level.INFO, text), Says(self.number, hold)]
+        return [LogLine(Level.INFO, text), ClientRequest(self.number, hold)]
 
 
 def of_vehicle(exchange: Exchange, effects: Sequence[BridgeEffect]) -> list[BridgeEffect]:
     """What an exchange leads to, as its vehicle's."""
-    return [OfVehicle(exchange.vehicle, tuple(effects))] if effects else []
+    return [AboutVehicle(exchange.vehicle, tuple(effects))] if effects else []

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from gcs.bridge.effects import BridgeEffect, Notes, ToLink
+from gcs.bridge.effects import BridgeEffect, ForwardToLink, LogLine
 from gcs.bridge.peers.client import Client
 from gcs.bridge.routing import Routes
 from gcs.gate.effects import Level
@@ -59,7 +59,7 @@ class ClientHeartbeats:
             return self._plays_vehicle(client, who)
         others = self._routes.between_clients(frame, client.link)
         return [
-            ToLink(other, frame.raw)
+            ForwardToLink(other, frame.raw)
             for other in others
             if not self._routes.was_heard(other, frame.sysid, frame.compid)
         ]
@@ -84,7 +84,7 @@ class ClientHeartbeats:
             f"heartbeats of {client.name} are not sent to other clients: it calls itself "
             f"{who[0]}/{who[1]}, a vehicle; a vehicle belongs on a --vehicle link"
         )
-        return [Notes(Level.WARNING, text)]
+        return [LogLine(Level.WARNING, text)]
 
 
 def _is_vehicle(beat: Heartbeat) -> bool:

@@ -12,7 +12,7 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import Answers, BridgeEffect
+from gcs.bridge.effects import BridgeEffect, Reply
 from gcs.bridge.peers.client import Exchange
 from gcs.gate.refusal import Code, Refusal
 from gcs.wire.ids import Cmd
@@ -111,7 +111,7 @@ class ControlServer:
             self._keeps[client.number] = by
         return dialogue.ask(by, message, [ipc.Ask(0, "station_take")], now_ns)
 
-    def _to_owner(self, message: CommandLong | CommandInt, by: From) -> Answers:
+    def _to_owner(self, message: CommandLong | CommandInt, by: From) -> Reply:
         """The one in control is asked by the same command, in the vehicle's name."""
         owner = self._keeps[self._owner]
         request = CommandLong(
@@ -127,7 +127,7 @@ class ControlServer:
             target_component=owner.source.compid,
             confirmation=0,
         )
-        return Answers(owner.link, owner.addressed, request)
+        return Reply(owner.link, owner.addressed, request)
 
     def _change(
         self, message: Message, asked: int, client: Exchange, by: From, now_ns: int
@@ -139,7 +139,7 @@ class ControlServer:
             control_request=asked,
             ack=_NACK_IN_CONTROL if kept else _ACK,
         )
-        told: list[BridgeEffect] = [Answers(by.link, by.addressed, ack)]
+        told: list[BridgeEffect] = [Reply(by.link, by.addressed, ack)]
         if kept or asked not in (_CHANGE_REQUEST, _CHANGE_RELEASE):
             return told
         word = "station_take" if asked == _CHANGE_REQUEST else "station_release"

@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Iterable
 from typing import Final, NamedTuple
 
-from gcs.bridge.effects import Answers
+from gcs.bridge.effects import Reply
 from gcs.protocol.effects import Address
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
@@ -60,7 +60,7 @@ class Loops:
         self.left_out: dict[int, int] = {}
         """Vehicles' links on which nothing is heard, and when something came on each last."""
 
-    def beat(self, sysid: int, clients: Iterable[int], now_ns: int) -> list[Answers]:
+    def beat(self, sysid: int, clients: Iterable[int], now_ns: int) -> list[Reply]:
         """A heartbeat of the autopilot of that system on any link; `clients` are the links of
         those who are sent what it says."""
         beats = self._beats.setdefault(sysid, deque(maxlen=MOST_BEATS))
@@ -73,7 +73,7 @@ class Loops:
             del self._asked[min(self._asked)]
         links = sorted(clients)
         self._asked[now_ns] = set(links)
-        return [Answers(link, self._own, _question(link, now_ns)) for link in links]
+        return [Reply(link, self._own, _question(link, now_ns)) for link in links]
 
     def drops(self, link: int, now_ns: int) -> bool:
         """Something came on a vehicle's link; whether that is left out."""

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Final, TypeAlias
 
 from gcs.bridge.conversation.answers import acknowledgement, texts
-from gcs.bridge.effects import Answers, BridgeEffect, Notes
+from gcs.bridge.effects import BridgeEffect, LogLine, Reply
 from gcs.bridge.peers.client import Client
 from gcs.bridge.routing import target_of
 from gcs.gate.effects import Level
@@ -85,13 +85,13 @@ class RefusedAddresses:
             # In a vehicle's name: QGroundControl shows no text of anybody else (from memory).
             speaker = vehicles[0] if vehicles else self._own
             messages = texts(Level.WARNING, f"refused: {reason}", sysid)
-            told += [Answers(client.link, speaker, message) for message in messages]
+            told += [Reply(client.link, speaker, message) for message in messages]
         message = decode(frame) if why_not_ours else None
         if isinstance(message, CommandLong | CommandInt):
             asked = Address(sysid, compid or Component.AUTOPILOT1)
             sender = Address(frame.sysid, frame.compid)
             denied = acknowledgement(message.command, Result.DENIED, sender, Code.POLICY)
-            told.append(Answers(client.link, asked, denied))
+            told.append(Reply(client.link, asked, denied))
         return told
 
     def of_own(self, client: Client, frame: Frame) -> list[BridgeEffect]:
@@ -104,7 +104,7 @@ class RefusedAddresses:
             return []
         sender = Address(frame.sysid, frame.compid)
         unsupported = Result.UNSUPPORTED, sender, Code.UNSUPPORTED
-        return [Answers(client.link, self._own, acknowledgement(message.command, *unsupported))]
+        return [Reply(client.link, self._own, acknowledgement(message.command, *unsupported))]
 
     def _namesake(self, link: int, frame: Frame, now_ns: int) -> list[BridgeEffect]:
         """Another bridge before this one, with the same address, is answered in our own name: it
@@ -117,11 +117,11 @@ class RefusedAddresses:
             return []
         self._namesakes[link] = now_ns
         text = f"refused: {own.sysid}/{own.compid} is this station's address, too: use --sysid"
-        return [Answers(link, own, message) for message in texts(Level.ERROR, text, 1)]
+        return [Reply(link, own, message) for message in texts(Level.ERROR, text, 1)]
 
     def _once(self, client: Client, reason: str) -> list[BridgeEffect]:
         """A frame that nobody can be answered about: told once for each client and reason."""
         if (client.link, reason) in self._told_once:
             return []
         self._told_once.add((client.link, reason))
-        return [Notes(Level.WARNING, f"frames of {client.name} are refused: {reason}")]
+        return [LogLine(Level.WARNING, f"frames of {client.name} are refused: {reason}")]

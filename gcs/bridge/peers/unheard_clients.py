@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from gcs.bridge.conversation.answers import texts
-from gcs.bridge.effects import Answers, BridgeEffect, Notes, OfVehicle
+from gcs.bridge.effects import AboutVehicle, BridgeEffect, LogLine, Reply
 from gcs.bridge.peers.client import Client
 from gcs.gate.effects import Level
 from gcs.protocol.effects import Address
@@ -51,9 +51,6 @@ def _words(client: Client, sysid: int, vehicle: Address, hears: Hears) -> list[B
     note = f"{client.name} is system {sysid}, and vehicle {vehicle.sysid} {alone}: {lost}"
     text = f"gate: vehicle {vehicle.sysid} {alone}, not {sysid}: {lost}; use id {hears.first}"
     return [
-        OfVehicle(vehicle.sysid, (Notes(Level.WARNING, note),)),
-        *(
-            Answers(client.link, vehicle, message)
-            for message in texts(Level.WARNING, text, TEXT_ID)
-        ),
+        AboutVehicle(vehicle.sysid, (LogLine(Level.WARNING, note),)),
+        *(Reply(client.link, vehicle, message) for message in texts(Level.WARNING, text, TEXT_ID)),
     ]

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from gcs.bridge.effects import Notes
+from gcs.bridge.effects import LogLine
 from gcs.gate.effects import Level
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Component, MsgId
@@ -35,30 +35,32 @@ class Unverified:
     def __len__(self) -> int:
         return len(self._told)
 
-    def come(self, link: int, name: str) -> list[Notes]:
+    def come(self, link: int, name: str) -> list[LogLine]:
         """A peer is there, of whom nothing is known."""
         self._came += 1
         told = self._told[link] = self._came <= TOLD_A_SECOND
         text = f"{name} has connected, on link {link}, not verified: it is sent heartbeats alone "
-        return [Notes(Level.INFO, f"{text}until it signs with the clients' key")] if told else []
+        return [LogLine(Level.INFO, f"{text}until it signs with the clients' key")] if told else []
 
-    def verify(self, link: int, name: str) -> list[Notes]:
+    def verify(self, link: int, name: str) -> list[LogLine]:
         """A frame of it was rightly signed: it is a client like others."""
         del self._told[link]
-        return [Notes(Level.INFO, f"{name}, on link {link}, is verified: it has the clients' key")]
+        return [
+            LogLine(Level.INFO, f"{name}, on link {link}, is verified: it has the clients' key")
+        ]
 
-    def go(self, link: int, name: str, reason: str) -> list[Notes]:
+    def go(self, link: int, name: str, reason: str) -> list[LogLine]:
         """It is not there any more."""
         told = self._told.pop(link)
-        return [Notes(Level.INFO, f"{name}, not verified, has gone: {reason}")] if told else []
+        return [LogLine(Level.INFO, f"{name}, not verified, has gone: {reason}")] if told else []
 
-    def second(self) -> list[Notes]:
+    def second(self) -> list[LogLine]:
         """Once a second: how many were not told."""
         more, self._came = self._came - TOLD_A_SECOND, 0
         if more <= 0:
             return []
         text = f"{more} more peers have connected within a second, not verified"
-        return [Notes(Level.WARNING, text)]
+        return [LogLine(Level.WARNING, text)]
 
     def shares(self, frames: Sequence[Frame]) -> Iterable[tuple[int, Sequence[bytes]]]:
         """What each of them is sent of frames that came from the vehicle's side."""

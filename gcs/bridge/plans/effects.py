@@ -1,6 +1,6 @@
 """What a plan server answers: a closed union of frozen values, for the bridge to put into practice.
 
-`Answers` (of `gcs/bridge/effects.py`) is a message for the client; the others are here.
+`Reply` (of `gcs/bridge/effects.py`) is a message for the client; the others are here.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs.bridge.client_plan import ClientPlan
-from gcs.bridge.effects import Answers
+from gcs.bridge.effects import Reply
 from gcs.gate.refusal import Refusal
 from gcs.wire.ids import MissionType
 
@@ -63,4 +63,4 @@ class Refused:
     """It is not the message that was given: that one put an end to this one."""
 
 
-PlanEffect: TypeAlias = Answers | Upload | Clear | Withdraw | SetCurrent | Pass | Refused
+PlanEffect: TypeAlias = Reply | Upload | Clear | Withdraw | SetCurrent | Pass | Refused

@@ -12,7 +12,7 @@ from typing import Final
 from gcs.bridge.conversation.answers import texts
 from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.conversation.recent_texts import RecentTexts
-from gcs.bridge.effects import Answers
+from gcs.bridge.effects import Reply
 from gcs.bridge.plans.collecting import acknowledgement
 from gcs.bridge.plans.effects import PlanEffect, Refused
 from gcs.gate.effects import Level
@@ -33,11 +33,11 @@ NAMES: Final = {
 """What plans are called in texts."""
 
 
-def reply(to: From, message: Message) -> Answers:
+def reply(to: From, message: Message) -> Reply:
     """One message for whoever sent `to`."""
     compid = to.addressed.compid
     name = Component.AUTOPILOT1 if compid == MISSION_PLANNER else compid
-    return Answers(to.link, Address(to.addressed.sysid, name), message)
+    return Reply(to.link, Address(to.addressed.sysid, name), message)
 
 
 def replies(to: From, messages: Sequence[Message]) -> list[PlanEffect]:

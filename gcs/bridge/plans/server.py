@@ -71,7 +71,7 @@ class PlanServer:
     `handle` takes every message of `PLAN_MESSAGES` that this client has sent to the vehicle,
     `wake` is due at `deadline_ns`.  What became of an `Upload` or `Clear` is told with `decided`
     (its verdict) and `ended` (its ending, if it was accepted); what is wrong with the plan with
-    `finding`, before the verdict.  All return effects; `Answers` go to the client.
+    `finding`, before the verdict.  All return effects; `Reply` goes to the client.
     """
 
     def __init__(

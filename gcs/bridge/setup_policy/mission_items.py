@@ -1,7 +1,7 @@
 """What commands a client's mission may carry: those that the client could send by themselves.
 
 An autopilot does the commands of a mission as it flies it, so each is judged by its row in the
-tables (`classes/`) and by the policy.  What flies, waits or jumps, and what means something in a
+tables (`catalog/`) and by the policy.  What flies, waits or jumps, and what means something in a
 mission only, is the mission verifier's to judge.
 """
 

@@ -1,6 +1,6 @@
 """The events: everything that can happen to the gate, by name.  Each is a row of the table.
 
-`facts.py` makes events from inputs.  The event of a request follows from the request alone; a
+`observe.py` makes events from inputs.  The event of a request follows from the request alone; a
 request for a mode by its name is the event of the request that means the same.
 """
 

@@ -1,6 +1,6 @@
 """The gate: runs the state machine's table, and issues the permits.
 
-An input is stored as facts, its changes become events (`facts.py`), and every event is looked up
+An input is stored as facts, its changes become events (`observe.py`), and every event is looked up
 in `table.TABLE`: the first branch whose guards hold is taken, and its actions run.  This is the
 only module that issues permits: for setpoints to a goal that the verifier cleared, and for
 commands that a branch of the table sends.

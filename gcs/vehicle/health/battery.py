@@ -15,7 +15,7 @@ from typing import Final
 from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged
 from gcs.gate.policy.policy import BatteryLimits
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.wire.ids import BatteryFunction, ChargeState
 from gcs.wire.messages import BatteryStatus, SysStatus
 
@@ -71,13 +71,13 @@ class Batteries:
         self._limits = limits
         self._seen: dict[int, _Battery] = {}
 
-    def system_status(self, message: SysStatus, now_ns: int) -> Iterator[ToGate]:
+    def system_status(self, message: SysStatus, now_ns: int) -> Iterator[GateInput]:
         """SYS_STATUS; -1 % and 65535 mV are not known, and 0 mV is not measured."""
         yield from self._judge(
             FIRST, message.battery_remaining, message.voltage_battery, Level.GOOD, "", now_ns
         )
 
-    def battery_status(self, message: BatteryStatus, now_ns: int) -> Iterator[ToGate]:
+    def battery_status(self, message: BatteryStatus, now_ns: int) -> Iterator[GateInput]:
         """BATTERY_STATUS of a battery that drives motors."""
         if message.battery_function not in PROPULSION:
             return
@@ -92,7 +92,7 @@ class Batteries:
 
     def _judge(
         self, number: int, left_pct: int, total_mv: int, told: Level, words: str, now_ns: int
-    ) -> Iterator[ToGate]:
+    ) -> Iterator[GateInput]:
         limits, battery = self._limits, self._seen.setdefault(number, _Battery())
         found = [(told, words)]
         if left_pct >= 0:
@@ -116,7 +116,7 @@ class Batteries:
             (Condition.BATTERY_LOW, Level.LOW),
             (Condition.BATTERY_CRITICAL, Level.CRITICAL),
         ):
-            yield ToGate(ConditionChanged(name, worst.level >= level, worst.why))
+            yield GateInput(ConditionChanged(name, worst.level >= level, worst.why))
 
 
 _STATES: Final = frozenset(int(state) for state in ChargeState)

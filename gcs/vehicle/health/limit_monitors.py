@@ -10,7 +10,7 @@ from gcs.gate.inputs import ConditionChanged
 from gcs.gate.policy.policy import GpsLimits, Policy
 from gcs.protocol.sequence import SequenceTracker
 from gcs.session.speedup_waits import Times
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.vehicle.health.battery import Batteries
 from gcs.vehicle.health.link_quality import LinkQuality
 from gcs.wire import messages as m
@@ -44,13 +44,13 @@ class GpsQuality:
         self._others_in_a_row = 0
         """Reports that say otherwise than what is told."""
 
-    def gps_raw(self, message: GpsRawInt) -> Iterator[ToGate]:
+    def gps_raw(self, message: GpsRawInt) -> Iterator[GateInput]:
         """GPS_RAW_INT.  What is not known is not bad; without a fix there is nothing to judge."""
         why = self._poor(message) if message.fix_type >= GpsFix.FIX_TYPE_3D_FIX else []
         self._others_in_a_row = self._others_in_a_row + 1 if bool(why) is not self._is_poor else 0
         if self._others_in_a_row >= REPORTS_THAT_COUNT:
             self._is_poor, self._others_in_a_row = bool(why), 0
-            yield ToGate(ConditionChanged(Condition.GPS_POOR, self._is_poor, ", ".join(why)))
+            yield GateInput(ConditionChanged(Condition.GPS_POOR, self._is_poor, ", ".join(why)))
 
     def _poor(self, message: GpsRawInt) -> list[str]:
         limits, satellites = self._limits, message.satellites_visible
@@ -73,7 +73,7 @@ class Watch:
         self._link = LinkQuality(policy.link, times)
         self._gps = GpsQuality(policy.gps)
 
-    def heard(self, message: m.Message, now_ns: int) -> Iterator[ToGate]:
+    def heard(self, message: m.Message, now_ns: int) -> Iterator[GateInput]:
         """A message of the vehicle's autopilot."""
         match message:
             case m.SysStatus():
@@ -87,19 +87,19 @@ class Watch:
             case _:
                 pass
 
-    def radio(self, message: m.RadioStatus, now_ns: int) -> Iterator[ToGate]:
+    def radio(self, message: m.RadioStatus, now_ns: int) -> Iterator[GateInput]:
         """RADIO_STATUS, which a radio sends in its own name."""
         return self._link.radio(message, now_ns)
 
-    def second(self, losses: SequenceTracker, now_ns: int) -> Iterator[ToGate]:
+    def second(self, losses: SequenceTracker, now_ns: int) -> Iterator[GateInput]:
         """Once a second."""
         return self._link.second(losses.received, losses.lost, now_ns)
 
 
-def _own_fence(message: m.FenceStatus) -> ToGate:
+def _own_fence(message: m.FenceStatus) -> GateInput:
     """FENCE_STATUS: ArduPilot's, which acts on it by itself (FENCE_ACTION)."""
     kinds = frozenset(int(kind) for kind in FenceBreach)
     kind = FenceBreach(message.breach_type) if message.breach_type in kinds else FenceBreach.NONE
     text = f"the vehicle breaches its own fence: it is {BREACH_WORDS[kind]}"
     breached = bool(message.breach_status)
-    return ToGate(ConditionChanged(Condition.VEHICLE_FENCE_BREACHED, breached, text))
+    return GateInput(ConditionChanged(Condition.VEHICLE_FENCE_BREACHED, breached, text))

@@ -13,7 +13,7 @@ from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged
 from gcs.gate.policy.policy import LinkLimits
 from gcs.session.speedup_waits import Times
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.wire.messages import RadioStatus
 
 STEPS_PER_DB: Final = 1.9
@@ -42,7 +42,7 @@ class LinkQuality:
         self._margin_ns = 0
         self._is_faint = False
 
-    def second(self, received: int, lost: int, now_ns: int) -> Iterator[ToGate]:
+    def second(self, received: int, lost: int, now_ns: int) -> Iterator[GateInput]:
         """Once a second, with the number of frames that have come and were lost so far."""
         if now_ns - self._margin_ns > self._silent_ns:
             self._margin_db, self._is_faint = None, False
@@ -60,7 +60,7 @@ class LinkQuality:
                 self._loses = self._lost_pct > limit_pct
         yield self._told()
 
-    def radio(self, message: RadioStatus, now_ns: int) -> Iterator[ToGate]:
+    def radio(self, message: RadioStatus, now_ns: int) -> Iterator[GateInput]:
         """RADIO_STATUS."""
         ends = ((message.rssi, message.noise), (message.remrssi, message.remnoise))
         margins = [(s - n) / STEPS_PER_DB for s, n in ends if UNKNOWN not in (s, n) and s > 0]
@@ -71,10 +71,10 @@ class LinkQuality:
         self._is_faint = self._margin_db < least_db
         yield self._told()
 
-    def _told(self) -> ToGate:
+    def _told(self) -> GateInput:
         why = []
         if self._loses:
             why.append(f"{self._lost_pct:.0f} % of the vehicle's frames are lost")
         if self._is_faint and self._margin_db is not None:
             why.append(f"the radio's signal is {self._margin_db:.0f} dB above its noise")
-        return ToGate(ConditionChanged(Condition.LINK_POOR, bool(why), "; ".join(why)))
+        return GateInput(ConditionChanged(Condition.LINK_POOR, bool(why), "; ".join(why)))

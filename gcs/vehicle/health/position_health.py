@@ -17,7 +17,7 @@ from typing import Final
 
 from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.wire.ids import EkfFlag, EstimatorFlag, GpsFix, Sensor
 from gcs.wire.messages import EkfStatusReport, EstimatorStatus, GpsRawInt, SysStatus
 
@@ -111,7 +111,7 @@ class PositionHealth:
             accuracy_m = self.gps.accuracy_m
         return None if accuracy_m is None else math.ceil(accuracy_m * 10.0) / 10.0
 
-    def gps_raw(self, message: GpsRawInt, armed: bool, now_ns: int) -> Iterator[ToGate]:
+    def gps_raw(self, message: GpsRawInt, armed: bool, now_ns: int) -> Iterator[GateInput]:
         gps = self.gps
         if not gps.seen_ns:
             gps.had_fix = False  # what SYS_STATUS calls healthy need not be a fix
@@ -123,7 +123,7 @@ class PositionHealth:
         counts = gps.had_fix or (armed and gps.fitted)
         yield _condition(Condition.GPS_LOST, counts and not gps.fixed, gps.words)
 
-    def gps_silent(self, silent_ns: int, now_ns: int, *, positions: bool) -> Iterator[ToGate]:
+    def gps_silent(self, silent_ns: int, now_ns: int, *, positions: bool) -> Iterator[GateInput]:
         """Once a second: the receiver is told of no more, though positions come.  Where none come
         (`positions`) it is the link, or the estimator, that something is wrong with."""
         gps = self.gps
@@ -133,7 +133,7 @@ class PositionHealth:
         if gps.had_fix and gps.seen_ns and now_ns - awaited_ns > silent_ns:
             yield _condition(Condition.GPS_LOST, True, "the vehicle tells nothing of its GPS")
 
-    def system_status(self, message: SysStatus, armed: bool) -> Iterator[ToGate]:
+    def system_status(self, message: SysStatus, armed: bool) -> Iterator[GateInput]:
         """The health bits, where the messages that tell more do not come."""
         used = message.onboard_control_sensors_present & message.onboard_control_sensors_enabled
         healthy = message.onboard_control_sensors_health
@@ -153,7 +153,7 @@ class PositionHealth:
 
     def estimator_status(
         self, message: EstimatorStatus, armed: bool, now_ns: int
-    ) -> Iterator[ToGate]:
+    ) -> Iterator[GateInput]:
         """PX4's."""
         accuracy_m = message.pos_horiz_accuracy
         self.estimator.accuracy_m = accuracy_m if math.isfinite(accuracy_m) else None
@@ -169,7 +169,7 @@ class PositionHealth:
             troubles.append(f"position known to {accuracy_m:.0f} m")
         yield from self._judge(troubles, armed, now_ns)
 
-    def ekf_status(self, message: EkfStatusReport, armed: bool, now_ns: int) -> Iterator[ToGate]:
+    def ekf_status(self, message: EkfStatusReport, armed: bool, now_ns: int) -> Iterator[GateInput]:
         """ArduPilot's."""
         troubles = [
             *_flag_troubles(message.flags),
@@ -183,7 +183,7 @@ class PositionHealth:
             troubles.append("not started")
         yield from self._judge(troubles, armed, now_ns)
 
-    def _judge(self, troubles: list[str], armed: bool, now_ns: int) -> Iterator[ToGate]:
+    def _judge(self, troubles: list[str], armed: bool, now_ns: int) -> Iterator[GateInput]:
         estimator = self.estimator
         if not estimator.seen_ns:
             # SYS_STATUS calls ArduPilot's attitude healthy 20 s before there is a position.
@@ -196,8 +196,8 @@ class PositionHealth:
             yield _condition(Condition.ESTIMATOR_UNRELIABLE, bad, "; ".join(troubles))
 
 
-def _condition(name: Condition, active: bool, text: str) -> ToGate:
-    return ToGate(ConditionChanged(name, active, text))
+def _condition(name: Condition, active: bool, text: str) -> GateInput:
+    return GateInput(ConditionChanged(name, active, text))
 
 
 def _flag_troubles(flags: int) -> Iterator[str]:

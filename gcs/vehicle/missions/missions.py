@@ -21,7 +21,7 @@ from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.transfer import SPEC_TIMING, Timing
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
-from gcs.session.work import AskGate, Log, ToGate, Work
+from gcs.session.work import AskGate, GateInput, Log, Work
 from gcs.vehicle.missions.jobs.check import NO_MISSION, Check, CheckUnknown
 from gcs.vehicle.missions.jobs.clear import Clear
 from gcs.vehicle.missions.jobs.download import Download
@@ -301,7 +301,7 @@ class Missions:
         self._on_board, self._begin_seq = None, None
         self._told.learn_anew()
         log = Log(Level.ERROR, NODE, f"While its mission is flown: {why}")
-        return [log, ToGate(MissionLoaded("", 0))]
+        return [log, GateInput(MissionLoaded("", 0))]
 
     def wake(self, view: VehicleView, now_ns: int) -> list[Work]:
         if self._job is None:
@@ -317,7 +317,7 @@ class Missions:
         if self._on_board is None:
             return work
         self._on_board = None
-        return [*work, ToGate(MissionLoaded("", 0))]
+        return [*work, GateInput(MissionLoaded("", 0))]
 
     def stop(self, request_id: int) -> list[Work]:
         """Whoever asked for the transfer `request_id`, somebody stops it, if it is under way."""
@@ -379,4 +379,4 @@ class Missions:
         if self._on_board is None:
             return []
         over = finished and self._on_board.last_seq is not None
-        return [ToGate(MissionSeen(seq, self.total or 0, over))]
+        return [GateInput(MissionSeen(seq, self.total or 0, over))]

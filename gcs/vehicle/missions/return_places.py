@@ -20,7 +20,7 @@ from gcs.gate.refusal import Refusal
 from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address, Heard
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import GateInput, Log, Work
 from gcs.vehicle.missions.jobs.facts import landings_on_board
 from gcs.vehicle.missions.paths import bad_rally_points
 from gcs.vehicle.missions.plan_on_board import PlanOnBoard
@@ -118,7 +118,7 @@ class ReturnPlaces:
         if seen == self._told:
             return []
         self._told = seen
-        return [ToGate(seen), *_logged(seen), *self._outside(telemetry)]
+        return [GateInput(seen), *_logged(seen), *self._outside(telemetry)]
 
     def _outside(self, telemetry: Telemetry) -> list[Work]:
         """Said once of each rally point where the policy lets nobody land: the vehicle's own

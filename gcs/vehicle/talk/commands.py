@@ -22,7 +22,7 @@ from gcs.protocol.effects import (
     Withdraw,
 )
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import GateInput, Log, Work
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import Result
 from gcs.wire.messages import CommandLong
@@ -235,8 +235,8 @@ def _tries(kind: CommandKind) -> int | None:
     return 1 if kind in ONE_TRY else 4
 
 
-def _answer(wanted: SendCommand, result: int | None, text: str = "") -> ToGate:
-    return ToGate(CommandEnded(wanted.request_id, wanted.kind, result, text))
+def _answer(wanted: SendCommand, result: int | None, text: str = "") -> GateInput:
+    return GateInput(CommandEnded(wanted.request_id, wanted.kind, result, text))
 
 
 def _log(text: str) -> Log:

@@ -18,7 +18,7 @@ from gcs.gate.inputs import CommandEnded
 from gcs.protocol.px4_event_words import WordedEvent, worded
 from gcs.protocol.px4_events import ArmingChecks
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import GateInput, Log, Work
 from gcs.wire.ids import Severity
 from gcs.wire.messages import Event, Statustext
 
@@ -229,10 +229,10 @@ class Reasons:
         explained: list[Work] = []
         for item in work:
             match item:
-                case ToGate(CommandEnded(kind=kind, result=result) as ended) if result:
+                case GateInput(CommandEnded(kind=kind, result=result) as ended) if result:
                     text = self._text(kind, custom_mode, now_ns)
                     if text or kind not in WAITS_FOR_REASONS:
-                        explained.append(ToGate(replace(ended, text=text)))
+                        explained.append(GateInput(replace(ended, text=text)))
                     else:
                         self._waiting = *self._waiting, (now_ns + self._wait_ns, ended)
                 case _:
@@ -244,7 +244,9 @@ class Reasons:
         due = [ended for due_ns, ended in self._waiting if now_ns >= due_ns]
         self._waiting = tuple(item for item in self._waiting if now_ns < item[0])
         texts = (self._text(ended.kind, custom_mode, now_ns) for ended in due)
-        return [ToGate(replace(ended, text=text)) for ended, text in zip(due, texts, strict=True)]
+        return [
+            GateInput(replace(ended, text=text)) for ended, text in zip(due, texts, strict=True)
+        ]
 
     def _text(self, kind: CommandKind, custom_mode: int, now_ns: int) -> str:
         if kind is CommandKind.ARM:

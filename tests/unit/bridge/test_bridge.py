@@ -10,18 +10,18 @@ from pymavlink.dialects.v20 import all as mavlink
 from gcs import ipc
 from gcs.bridge.bridge import Bridge
 from gcs.bridge.effects import (
-    Answers,
+    AboutVehicle,
     AsksPlan,
     AsksVehicle,
     BridgeEffect,
+    ClientRefused,
+    ClientRequest,
+    ForwardToLink,
+    ForwardToVehicle,
     Joined,
+    LogLine,
     Lost,
-    Notes,
-    OfVehicle,
-    Refuses,
-    Says,
-    ToLink,
-    ToVehicle,
+    Reply,
 )
 from gcs.bridge.judge.received import Judged
 from gcs.bridge.translate.meaning import Seen
@@ -86,19 +86,19 @@ def of(kind: type, effects: Any) -> list[Any]:
     each_one = [
         one
         for each in effects
-        for one in (each.effects if isinstance(each, OfVehicle) else (each,))
+        for one in (each.effects if isinstance(each, AboutVehicle) else (each,))
     ]
     return [each for each in each_one if isinstance(each, kind)]
 
 
 def acks(effects: Any) -> list[tuple[int, int]]:
     """Command and MAV_RESULT."""
-    told = [each.message for each in of(Answers, effects)]
+    told = [each.message for each in of(Reply, effects)]
     return [(each.command, each.result) for each in told if isinstance(each, CommandAck)]
 
 
 def texts(effects: list[BridgeEffect]) -> str:
-    told = [each.message for each in of(Answers, effects)]
+    told = [each.message for each in of(Reply, effects)]
     return "".join(each.text for each in told if isinstance(each, Statustext))
 
 
@@ -115,7 +115,7 @@ def test_a_peer_is_a_client_with_its_first_frame_and_lost_when_it_is_silent() ->
 
 def links_of(judged: Judged) -> list[int]:
     """Where a client's frame goes on to."""
-    return [each.link for each in of(ToLink, judged.effects)]
+    return [each.link for each in of(ForwardToLink, judged.effects)]
 
 
 def test_a_heartbeat_that_a_client_sends_back_does_not_go_round_again() -> None:
@@ -148,11 +148,11 @@ def test_a_client_that_calls_itself_a_vehicle_is_none_for_the_others() -> None:
     played = mavlink.MAVLink_heartbeat_message(2, 12, 0, 0, 4, 3)
     judged = table.says(played, 1, sysid=2)
     assert links_of(judged) == []
-    told = of(Notes, judged.effects)
+    told = of(LogLine, judged.effects)
     assert "it calls itself 2/190, a vehicle; a vehicle belongs on a --vehicle link" in told[0].text
     assert told[0].level is Level.WARNING
     again = table.says(played, 1, sysid=2)
-    assert not of(Notes, again.effects), "once"
+    assert not of(LogLine, again.effects), "once"
     assert links_of(again) == []
     companion = mavlink.MAVLink_heartbeat_message(18, 12, 0, 0, 4, 3)
     assert links_of(table.says(companion, 1, sysid=3)) == [2], "its type is no vehicle's"
@@ -162,9 +162,9 @@ def test_a_heartbeat_goes_to_the_other_clients_and_nothing_else_does() -> None:
     table = Table(clients=3)
     for link in (1, 2, 3):
         table.says(HEARTBEAT, link)
-    assert [each.link for each in of(ToLink, table.says(HEARTBEAT, 2).effects)] == [1, 3]
-    assert not of(ToLink, table.says(mavlink.MAVLink_system_time_message(1, 1), 2).effects)
-    assert not of(ToVehicle, table.says(HEARTBEAT, 2).effects)
+    assert [each.link for each in of(ForwardToLink, table.says(HEARTBEAT, 2).effects)] == [1, 3]
+    assert not of(ForwardToLink, table.says(mavlink.MAVLink_system_time_message(1, 1), 2).effects)
+    assert not of(ForwardToVehicle, table.says(HEARTBEAT, 2).effects)
 
 
 def test_what_is_for_another_client_goes_there_unless_it_is_denied() -> None:
@@ -174,13 +174,13 @@ def test_what_is_for_another_client_goes_there_unless_it_is_denied() -> None:
     ping = mavlink.MAVLink_ping_message(1, 1, 246, 190)
     judged = table.says(ping, 1)
     assert not judged.refused
-    assert [each.link for each in of(ToLink, judged.effects)] == [2]
+    assert [each.link for each in of(ForwardToLink, judged.effects)] == [2]
     takes_over = mavlink.MAVLink_file_transfer_protocol_message(0, 246, 190, bytes(251))
-    assert [each.link for each in of(ToLink, table.says(takes_over, 1).effects)] == [2]
+    assert [each.link for each in of(ForwardToLink, table.says(takes_over, 1).effects)] == [2]
     nobody = table.says(mavlink.MAVLink_ping_message(1, 1, 77, 1), 1)
     assert nobody.refused
-    assert "no system 77" in of(Notes, nobody.effects)[0].text
-    assert not of(Notes, table.says(mavlink.MAVLink_ping_message(1, 1, 77, 1), 1).effects), "once"
+    assert "no system 77" in of(LogLine, nobody.effects)[0].text
+    assert not of(LogLine, table.says(mavlink.MAVLink_ping_message(1, 1, 77, 1), 1).effects), "once"
     denied = mavlink.MAVLink_tunnel_message(246, 190, 0, 0, bytes(128))
     assert table.says(denied, 1).refused
     for_the_bridge = table.says(mavlink.MAVLink_ping_message(1, 1, 255, 191), 1)
@@ -201,10 +201,10 @@ def test_a_command_for_all_components_is_answered_by_the_autopilot() -> None:
     table = Table(seen=standing(PX4))
     for compid, answers_as in ((0, 1), (1, 1), (154, 154)):
         around = mavlink.MAVLink_command_long_message(1, compid, Cmd.DO_GO_AROUND, 0, *[0.0] * 7)
-        refused = of(Refuses, table.says(around).effects)[0]
+        refused = of(ClientRefused, table.says(around).effects)[0]
         verdict = ipc.VerdictEvent(refused.ask.id, refused.ask.word, "refused", "UNSUPPORTED")
         told = table.bridge.told(refused.client, verdict, 1, table.now_ns)
-        (answer, *_) = of(Answers, told)
+        (answer, *_) = of(Reply, told)
         assert answer.source == Address(1, answers_as)
         assert acks(told) == [(Cmd.DO_GO_AROUND, Result.UNSUPPORTED)]
         table.now_ns += 10 * S
@@ -220,7 +220,7 @@ def test_a_command_for_the_bridge_itself_is_answered_unsupported_in_its_own_name
         judged = table.says(command)
         assert judged.refused
         assert acks(judged.effects) == [(Cmd.REQUEST_MESSAGE, Result.UNSUPPORTED)]
-        (answer,) = of(Answers, judged.effects)
+        (answer,) = of(Reply, judged.effects)
         assert (answer.link, answer.source) == (1, OWN)
         assert (answer.message.target_system, answer.message.target_component) == (245, 190)
     elsewhere = mavlink.MAVLink_command_long_message(255, 77, Cmd.REQUEST_MESSAGE, 0, *[0.0] * 7)
@@ -235,8 +235,8 @@ def test_a_command_for_a_client_of_the_bridges_system_goes_to_that_client() -> N
             255, compid, Cmd.REQUEST_MESSAGE, 0, *[0.0] * 7
         )
         judged = table.says(command)
-        assert [each.link for each in of(ToLink, judged.effects)] == [2]
-        assert not of(Answers, judged.effects)
+        assert [each.link for each in of(ForwardToLink, judged.effects)] == [2]
+        assert not of(Reply, judged.effects)
 
 
 def test_before_a_vehicle_is_heard_nothing_moves_and_nothing_is_set_up() -> None:
@@ -245,24 +245,24 @@ def test_before_a_vehicle_is_heard_nothing_moves_and_nothing_is_set_up() -> None
     for message in (ARM, write):
         judged = table.says(message, vehicle=None)
         assert judged.refused
-        assert not of(Says, judged.effects)
-        assert not of(ToVehicle, judged.effects)
+        assert not of(ClientRequest, judged.effects)
+        assert not of(ForwardToVehicle, judged.effects)
 
 
 def test_a_request_of_anybody_else_makes_an_old_answer_void() -> None:
     """An arming that was accepted is asked for again once another one has asked for something."""
     table = Table(clients=2, seen=standing(PX4))
 
-    def arms() -> list[Says]:
+    def arms() -> list[ClientRequest]:
         table.now_ns += S // 2
         effects = table.says(ARM).effects
-        for said in of(Says, effects):
+        for said in of(ClientRequest, effects):
             for event in (
                 ipc.VerdictEvent(said.command.id, "arm", "accepted", operation=1),
                 ipc.EndingEvent(said.command.id, "arm", "complete"),
             ):
                 table.bridge.told(said.client, event, 1, table.now_ns)
-        return of(Says, effects)
+        return of(ClientRequest, effects)
 
     assert len(arms()) == 1
     assert arms() == []
@@ -283,13 +283,13 @@ def test_the_soonest_wait_of_any_client_is_the_bridges() -> None:
     assert due_ns(table) == first_ns
     assert table.bridge.wake(first_ns - 1) == []
     asked = table.bridge.wake(first_ns)
-    assert {each.link for each in of(Answers, asked)} == {1}
+    assert {each.link for each in of(Reply, asked)} == {1}
 
 
 def test_a_plan_is_collected_and_asked_for_whole() -> None:
     table = Table(seen=flying(ARDUPILOT))
     begun = table.says(mavlink.MAVLink_mission_count_message(1, 1, 1, 0)).effects
-    assert any(isinstance(each.message, MissionRequestInt) for each in of(Answers, begun))
+    assert any(isinstance(each.message, MissionRequestInt) for each in of(Reply, begun))
     item = mavlink.MAVLink_mission_item_int_message(
         1, 1, 0, 3, 16, 0, 1, 0, 0, 0, 0, 473977420, 85455940, 10, 0
     )
@@ -304,14 +304,14 @@ def test_an_item_to_fly_to_at_once_is_a_goto_and_no_part_of_a_plan() -> None:
     item = mavlink.MAVLink_mission_item_int_message(
         1, 1, 0, 6, 16, 2, 1, 0, 0, 0, 0, 473977420, 85455940, 10, 0
     )
-    (said,) = of(Says, table.says(item).effects)
+    (said,) = of(ClientRequest, table.says(item).effects)
     assert said.command.word == "goto"
 
 
 def test_too_much_is_counted_and_told() -> None:
     table = Table()
     (note,) = table.bridge.flooded(1, 5)
-    assert note == Notes(Level.WARNING, "udp 1 sends too much: 5 datagrams dropped")
+    assert note == LogLine(Level.WARNING, "udp 1 sends too much: 5 datagrams dropped")
     table.bridge.flooded(1, 2)
     assert table.bridge.status(table.now_ns)[0].dropped == 7
     assert table.bridge.flooded(2, 5) == []
@@ -349,7 +349,7 @@ def test_a_client_that_has_gone_is_no_client() -> None:
     table.says(HEARTBEAT)
     lost, note = table.bridge.gone(1, "the connection was closed")
     assert lost == Lost(1000, "the connection was closed")
-    assert isinstance(note, Notes)
+    assert isinstance(note, LogLine)
     assert table.bridge.gone(1, "again") == []
     assert table.bridge.told(1000, ipc.EndingEvent(1, "arm", "complete"), 1, table.now_ns) == []
     assert table.bridge.status(table.now_ns) == []
@@ -360,12 +360,12 @@ def test_what_is_for_all_and_changes_a_vehicle_goes_to_the_one_that_it_was_judge
     table = Table(seen=standing(PX4))
     table.says(HEARTBEAT)
     write = mavlink.MAVLink_param_set_message(0, 1, b"SDLOG_MODE", 1.0, 6)
-    (sent,) = of(ToVehicle, table.says(write).effects)
+    (sent,) = of(ForwardToVehicle, table.says(write).effects)
     (frame,) = split(sent.raw)
     assert isinstance(frame, Frame)
     assert (frame.sysid, frame.payload[4]) == (245, VEHICLE.sysid), "PARAM_SET.target_system"
     harmless = mavlink.MAVLink_param_request_list_message(0, 1)
-    (passed,) = of(ToVehicle, table.says(harmless).effects)
+    (passed,) = of(ForwardToVehicle, table.says(harmless).effects)
     assert passed.raw == frame_of(harmless).raw
 
 
@@ -396,7 +396,7 @@ def told_of(table: Table, judged: Judged) -> str:
                 table.now_ns,
             )
         )
-        for each in of(Refuses, judged.effects)
+        for each in of(ClientRefused, judged.effects)
     )
 
 
@@ -428,5 +428,5 @@ def test_another_fence_that_is_refused_is_told_and_the_same_count_again_is_not()
     ],
 )
 def test_a_type_of_plan_that_is_not_known_is_not_supported(message: Any) -> None:
-    answers = [each.message for each in of(Answers, Table().says(message).effects)]
+    answers = [each.message for each in of(Reply, Table().says(message).effects)]
     assert [each.type for each in answers if isinstance(each, MissionAck)] == [3]

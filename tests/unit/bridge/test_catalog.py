@@ -134,7 +134,7 @@ class TestTheTableIsTotal:
 
 
 class TestTheDesignsRules:
-    """DESIGN.md, section 4, "Bridge mode"."""
+    """What moves a vehicle goes through the gate."""
 
     FEEDS_THE_ESTIMATOR = (
         "GPS_INPUT",

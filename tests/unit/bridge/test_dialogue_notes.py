@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcs import ipc
 from gcs.bridge.conversation.dialogue import Dialogue
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import Answers, BridgeEffect, Says
+from gcs.bridge.effects import BridgeEffect, ClientRequest, Reply
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck, CommandLong, Statustext
@@ -20,13 +20,13 @@ def asked(dialogue: Dialogue, *words: str) -> list[BridgeEffect]:
 
 
 def number(effects: list[BridgeEffect]) -> int:
-    (said,) = (each for each in effects if isinstance(each, Says))
+    (said,) = (each for each in effects if isinstance(each, ClientRequest))
     assert isinstance(said.command, ipc.Ask)
     return said.command.id
 
 
 def texts(effects: list[BridgeEffect]) -> list[str]:
-    said = [each.message for each in effects if isinstance(each, Answers)]
+    said = [each.message for each in effects if isinstance(each, Reply)]
     return [each.text for each in said if isinstance(each, Statustext)]
 
 
@@ -62,6 +62,6 @@ def test_of_several_requests_the_first_brings_it_and_the_others_do_not() -> None
 def test_what_is_so_already_is_told_with_its_answer() -> None:
     effects = asked(Dialogue(1000))
     assert texts(effects) == [NOTE]
-    ack = effects[-1].message if isinstance(effects[-1], Answers) else None
+    ack = effects[-1].message if isinstance(effects[-1], Reply) else None
     assert isinstance(ack, CommandAck)
     assert ack.result == Result.ACCEPTED

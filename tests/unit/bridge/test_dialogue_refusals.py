@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcs.bridge.conversation.dialogue import Dialogue
 from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.conversation.recent_texts import MOST_TEXTS
-from gcs.bridge.effects import Refuses
+from gcs.bridge.effects import ClientRefused
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd
@@ -21,7 +21,7 @@ def decisions(messages: list[tuple[Message | None, Refusal]], every_ms: int = 50
     dialogue, now_ns, count = Dialogue(1000), 0, 0
     for message, refusal in messages:
         effects = dialogue.refuse(CLIENT, message, "GPS_INPUT", refusal, now_ns)
-        count += sum(isinstance(effect, Refuses) for effect in effects)
+        count += sum(isinstance(effect, ClientRefused) for effect in effects)
         now_ns += every_ms * MS
     return count
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from gcs import ipc
 from gcs.bridge.conversation.dialogue import Dialogue
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import Answers, BridgeEffect, Says
+from gcs.bridge.effects import BridgeEffect, ClientRequest, Reply
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck, CommandLong, ManualControl
@@ -28,10 +28,10 @@ class Client:
         message = CommandLong(0, 0, 0, 0, 0, 0, 0, command, 1, 1, 0)
         effects = self.dialogue.ask(CLIENT, message, (ipc.Ask(0, word),), self.now_ns)
         (effect,) = effects
-        if isinstance(effect, Answers):
+        if isinstance(effect, Reply):
             assert isinstance(effect.message, CommandAck)
             return f"answered {Result(effect.message.result).name}"
-        assert isinstance(effect, Says)
+        assert isinstance(effect, ClientRequest)
         assert isinstance(effect.command, ipc.Ask)
         number = effect.command.id
         self.operation += 1
@@ -47,7 +47,7 @@ class Client:
 
 
 def results(effects: Sequence[BridgeEffect]) -> list[int]:
-    messages = [each.message for each in effects if isinstance(each, Answers)]
+    messages = [each.message for each in effects if isinstance(each, Reply)]
     return [each.result for each in messages if isinstance(each, CommandAck)]
 
 

@@ -7,7 +7,7 @@ import pytest
 from gcs import ipc
 from gcs.bridge.conversation.dialogue import Dialogue
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import Answers, BridgeEffect, Says
+from gcs.bridge.effects import BridgeEffect, ClientRequest, Reply
 from gcs.protocol.effects import Address
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck, CommandLong, Statustext
@@ -27,7 +27,7 @@ class Start:
     @staticmethod
     def number_of(effects: list[BridgeEffect]) -> int:
         (said,) = effects
-        assert isinstance(said, Says)
+        assert isinstance(said, ClientRequest)
         assert isinstance(said.command, ipc.Ask)
         return said.command.id
 
@@ -43,12 +43,12 @@ class Start:
 
 
 def results(effects: list[BridgeEffect]) -> list[int]:
-    acks = [each.message for each in effects if isinstance(each, Answers)]
+    acks = [each.message for each in effects if isinstance(each, Reply)]
     return [ack.result for ack in acks if isinstance(ack, CommandAck)]
 
 
 def texts(effects: list[BridgeEffect]) -> str:
-    said = [each.message for each in effects if isinstance(each, Answers)]
+    said = [each.message for each in effects if isinstance(each, Reply)]
     return "".join(text.text for text in said if isinstance(text, Statustext))
 
 
@@ -77,7 +77,7 @@ CHECKED = (ipc.Ask(0, "mission_check"), ipc.Ask(0, "arm"), ipc.Ask(0, "mission_s
 
 
 def asked_for(effects: list[BridgeEffect]) -> list[str]:
-    said = [each.command for each in effects if isinstance(each, Says)]
+    said = [each.command for each in effects if isinstance(each, ClientRequest)]
     return [ask.word for ask in said if isinstance(ask, ipc.Ask)]
 
 
@@ -126,4 +126,4 @@ def test_a_start_fails_with_the_arming_that_it_waits_for() -> None:
     aborted = ipc.EndingEvent(arming, "arm", "aborted", "OPERATOR", "stopped")
     effects = dialogue.told(aborted, 0)
     assert results(effects) == [Result.DENIED] * 2
-    assert not [each for each in effects if isinstance(each, Says)], "never asked for"
+    assert not [each for each in effects if isinstance(each, ClientRequest)], "never asked for"

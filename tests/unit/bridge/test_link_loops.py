@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gcs.bridge.effects import Answers
+from gcs.bridge.effects import Reply
 from gcs.bridge.peers.link_loops import (
     BEATS_NS,
     FORGOTTEN_NS,
@@ -28,7 +28,7 @@ def as_frame(message: Message) -> Frame:
     return frame
 
 
-def flood(loops: Loops, now_ns: int) -> list[Answers]:
+def flood(loops: Loops, now_ns: int) -> list[Reply]:
     """Far too many heartbeats of one autopilot; what is asked then."""
     return [asked for _ in range(MOST_BEATS) for asked in loops.beat(1, LINKS, now_ns)]
 

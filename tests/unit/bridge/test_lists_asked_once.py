@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.effects import Answers, ToVehicle
+from gcs.bridge.effects import ForwardToVehicle, Reply
 from gcs.wire.messages import MissionAck
 from tests.unit.bridge.test_bridge import HEARTBEAT, HOVERING, S, Table, of
 
@@ -17,7 +17,7 @@ def held_back() -> Table:
     """The station brings a plan on board, and DroneKit asks for it."""
     table = Table(seen=replace(HOVERING, plan_transfer=True))
     table.says(HEARTBEAT)
-    assert not of(ToVehicle, table.says(LIST).effects)
+    assert not of(ForwardToVehicle, table.says(LIST).effects)
     return table
 
 
@@ -25,8 +25,8 @@ def asked_again(table: Table, seconds: float) -> list[bytes]:
     """What goes to the vehicle then, and to the client nothing but texts."""
     table.now_ns += round(seconds * S)
     effects = table.bridge.ask_again(lambda _: table.seen, table.now_ns)
-    assert not [each for each in of(Answers, effects) if isinstance(each.message, MissionAck)]
-    return [each.raw for each in of(ToVehicle, effects)]
+    assert not [each for each in of(Reply, effects) if isinstance(each.message, MissionAck)]
+    return [each.raw for each in of(ForwardToVehicle, effects)]
 
 
 def test_it_goes_to_the_vehicle_once_the_station_has_done() -> None:

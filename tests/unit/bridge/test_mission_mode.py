@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import Says
+from gcs.bridge.effects import ClientRequest
 from gcs.bridge.mission_mode import LATE_NS, NOT_SHOWN, RECENT_NS, SHOWN_NS, MissionMode
 from gcs.bridge.peers.client import Client, Exchange
 from gcs.bridge.translate.chosen_before_arming import KEPT_NS
@@ -96,7 +96,7 @@ def due_ns(exchange: Exchange) -> int | None:
 
 
 def holds(exchange: Exchange, now_ns: int) -> list[ipc.Command]:
-    return [done.command for done in exchange.wake(now_ns) if isinstance(done, Says)]
+    return [done.command for done in exchange.wake(now_ns) if isinstance(done, ClientRequest)]
 
 
 def test_the_mode_is_taken_back_once() -> None:

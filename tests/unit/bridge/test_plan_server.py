@@ -8,7 +8,7 @@ import pytest
 
 from gcs import ipc
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import Answers
+from gcs.bridge.effects import Reply
 from gcs.bridge.plans.effects import (
     Clear,
     Pass,
@@ -141,7 +141,7 @@ class Script:
 
 
 def messages(effects: Sequence[PlanEffect]) -> list[Message]:
-    return [effect.message for effect in effects if isinstance(effect, Answers)]
+    return [effect.message for effect in effects if isinstance(effect, Reply)]
 
 
 def questions(effects: Sequence[PlanEffect]) -> list[int]:
@@ -176,7 +176,7 @@ def test_a_plan_is_asked_for_item_by_item_and_handed_on_whole() -> None:
 def test_answers_come_from_the_autopilot_and_go_to_who_asked() -> None:
     script = Script()
     (answer,) = script.say(count(1))
-    assert isinstance(answer, Answers)
+    assert isinstance(answer, Reply)
     assert (answer.link, answer.source) == (LINK, VEHICLE)
     assert isinstance(answer.message, MissionRequestInt)
     assert (answer.message.target_system, answer.message.target_component) == (245, 190)
@@ -185,7 +185,7 @@ def test_answers_come_from_the_autopilot_and_go_to_who_asked() -> None:
 def test_a_plan_for_the_mission_planner_component_is_the_autopilots() -> None:
     by = From(LINK, ME, Address(1, MISSION_PLANNER))
     (answer,) = Script().say(count(1), by)
-    assert isinstance(answer, Answers)
+    assert isinstance(answer, Reply)
     assert answer.source == Address(1, TO_AUTOPILOT)
 
 
@@ -328,7 +328,7 @@ def test_another_component_takes_no_plans() -> None:
     camera = Address(1, 100)
     effects = Script().say(count(2), From(LINK, ME, camera))
     assert results(effects) == [MissionResult.UNSUPPORTED]
-    assert all(each.source == camera for each in effects if isinstance(each, Answers))
+    assert all(each.source == camera for each in effects if isinstance(each, Reply))
 
 
 def test_a_second_component_on_the_link_waits_its_turn() -> None:

@@ -8,7 +8,14 @@ import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.bridge.bridge import Bridge
-from gcs.bridge.effects import Answers, Notes, OfVehicle, Refuses, Says, ToVehicle
+from gcs.bridge.effects import (
+    AboutVehicle,
+    ClientRefused,
+    ClientRequest,
+    ForwardToVehicle,
+    LogLine,
+    Reply,
+)
 from gcs.bridge.judge.received import Judged
 from gcs.gate.policy.parse import parse_policy
 from gcs.protocol.autopilot import PX4
@@ -56,7 +63,7 @@ def by_vehicle(judged: Judged, kind: type) -> dict[int, int]:
     return {
         each.vehicle: len(of(kind, [each]))
         for each in judged.effects
-        if isinstance(each, OfVehicle) and of(kind, [each])
+        if isinstance(each, AboutVehicle) and of(kind, [each])
     }
 
 
@@ -66,36 +73,36 @@ RTCM = mavlink.MAVLink_gps_rtcm_data_message(0, 4, [0] * 180)
 def test_a_message_without_a_target_that_is_refused_for_several_is_one_refusal() -> None:
     """And nothing is left in the other vehicle's dialogue: its request would never end."""
     pair = Pair('rtcm = "refuse"')
-    (refused,) = of(Refuses, pair.says(RTCM).effects)
-    (said,) = of(Says, pair.says(land(2)).effects)
+    (refused,) = of(ClientRefused, pair.says(RTCM).effects)
+    (said,) = of(ClientRequest, pair.says(land(2)).effects)
     assert (refused.ask.id, said.command.id) == (1, 2)
 
 
 def test_a_message_without_a_target_that_is_let_through_goes_out_once() -> None:
-    (sent,) = of(ToVehicle, Pair('rtcm = "forward"').says(RTCM).effects)
+    (sent,) = of(ForwardToVehicle, Pair('rtcm = "forward"').says(RTCM).effects)
     assert sent.raw == frame_of(RTCM).raw
 
 
 def test_a_rate_that_is_asked_of_all_vehicles_counts_for_each() -> None:
     pair = Pair("messages_hz = 200.0")
     for msgid in (100, 101):
-        assert by_vehicle(pair.says(faster(0, msgid, 50.0)), ToVehicle) == {1: 1, 2: 1}
+        assert by_vehicle(pair.says(faster(0, msgid, 50.0)), ForwardToVehicle) == {1: 1, 2: 1}
     for sysid in (1, 2):
         refused = pair.says(faster(sysid, 102, 50.0))
         assert refused.refused
-        assert by_vehicle(refused, Refuses) == {sysid: 1}
+        assert by_vehicle(refused, ClientRefused) == {sysid: 1}
 
 
 def test_a_group_that_is_asked_of_all_vehicles_counts_for_each() -> None:
     pair = Pair("messages_hz = 200.0")
     asked = mavlink.MAVLink_request_data_stream_message(0, 1, 0, 4, 1)
-    assert by_vehicle(pair.says(asked), ToVehicle) == {1: 1, 2: 1}
+    assert by_vehicle(pair.says(asked), ForwardToVehicle) == {1: 1, 2: 1}
     assert pair.says(faster(2, 102, 50.0)).refused
 
 
 def test_what_is_asked_of_all_vehicles_goes_to_each_in_its_own_name() -> None:
     """The same bytes twice would have each of them do it twice where they share a link."""
-    sent = of(ToVehicle, Pair().says(faster(0, 100, 10.0)).effects)
+    sent = of(ForwardToVehicle, Pair().says(faster(0, 100, 10.0)).effects)
     frames = [frame for each in sent for frame in split(each.raw) if isinstance(frame, Frame)]
     assert [frame.payload[30] for frame in frames] == [1, 2], "COMMAND_LONG.target_system"
 
@@ -108,8 +115,8 @@ def test_what_is_for_nobody_is_answered_with_a_text_that_names_the_vehicles(mess
     assert judged.refused
     assert acks(judged.effects) == []
     assert texts(list(judged.effects)) == "refused: there is no system 9 here (heard: system 1, 2)"
-    assert {each.source for each in of(Answers, judged.effects)} == {BOTH[0]}
-    assert len(of(Notes, judged.effects)) == 1
+    assert {each.source for each in of(Reply, judged.effects)} == {BOTH[0]}
+    assert len(of(LogLine, judged.effects)) == 1
     again = pair.says(message)
     assert (again.refused, list(again.effects)) == (True, [])
     assert "no system 10" in texts(list(pair.says(land(10)).effects))
@@ -130,7 +137,7 @@ def test_a_command_for_a_vehicle_that_is_shown_only_is_denied_in_its_name(kind: 
     assert texts(list(judged.effects)) == f"refused: {NOT_OURS}"
     assert acks(judged.effects) == [(Cmd.NAV_LAND, Result.DENIED)]
     assert {
-        each.source for each in of(Answers, judged.effects) if isinstance(each.message, CommandAck)
+        each.source for each in of(Reply, judged.effects) if isinstance(each.message, CommandAck)
     } == {BOTH[1]}
     again = pair.says(message, BOTH[:1], NOT_OURS)
     assert acks(again.effects) == [(Cmd.NAV_LAND, Result.DENIED)]
@@ -147,4 +154,4 @@ def test_what_is_no_command_for_a_vehicle_that_is_shown_only_is_told_by_text() -
 def test_before_a_vehicle_is_heard_the_bridge_says_so_itself() -> None:
     judged = Pair().says(land(1), vehicles=())
     assert "system 1 here (no vehicle's heartbeat was heard yet)" in texts(list(judged.effects))
-    assert {each.source for each in of(Answers, judged.effects)} == {OWN}
+    assert {each.source for each in of(Reply, judged.effects)} == {OWN}

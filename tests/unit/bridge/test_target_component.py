@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.effects import Answers, AsksPlan, Refuses, Says, ToVehicle
+from gcs.bridge.effects import AsksPlan, ClientRefused, ClientRequest, ForwardToVehicle, Reply
 from gcs.gate.refusal import Code
 from gcs.protocol.autopilot import PX4
 from gcs.protocol.effects import Address
@@ -64,10 +64,10 @@ def names(message: Any) -> str:
 def test_what_is_for_a_component_that_nobody_heard_is_refused(message: Any) -> None:
     judged = Table(seen=WITH_CAMERA).says(message)
     assert judged.refused
-    assert not of(ToVehicle, judged.effects)
-    assert not of(Says, judged.effects)
+    assert not of(ForwardToVehicle, judged.effects)
+    assert not of(ClientRequest, judged.effects)
     assert not of(AsksPlan, judged.effects)
-    (refused,) = of(Refuses, judged.effects)
+    (refused,) = of(ClientRefused, judged.effects)
     assert refused.refusal.code is Code.UNSUPPORTED
     assert "there is no component 77 of system 1 (the autopilot is 1/1)" in (
         refused.refusal.sentence
@@ -78,9 +78,9 @@ def test_what_is_for_a_component_that_nobody_heard_is_refused(message: Any) -> N
 def test_what_moves_the_vehicle_is_for_its_autopilot_alone(message: Any) -> None:
     judged = Table(seen=WITH_CAMERA).says(message)
     assert judged.refused
-    assert not of(ToVehicle, judged.effects)
-    assert not of(Says, judged.effects)
-    (refused,) = of(Refuses, judged.effects)
+    assert not of(ForwardToVehicle, judged.effects)
+    assert not of(ClientRequest, judged.effects)
+    (refused,) = of(ClientRefused, judged.effects)
     assert refused.refusal.code is Code.UNSUPPORTED
     assert "component 100 flies nothing" in refused.refusal.sentence
 
@@ -90,7 +90,7 @@ def test_what_is_for_the_autopilot_or_for_all_is_judged_as_ever(compid: int) -> 
     land = command(Cmd.NAV_LAND, compid)
     judged = Table(seen=WITH_CAMERA).says(land)
     assert not judged.refused
-    (said,) = of(Says, judged.effects)
+    (said,) = of(ClientRequest, judged.effects)
     assert said.command.word == "land"
 
 
@@ -104,25 +104,27 @@ def test_what_sets_up_a_component_that_is_there_goes_by_the_policy() -> None:
     """As before: the guard decides it, and a free parameter is written."""
     on_ground = replace(standing(PX4), hears=lambda compid: compid == CAMERA, in_control=True)
     (free, _), (free_of_nobody, _) = to_set_up(CAMERA), to_set_up(NOBODY)
-    assert of(ToVehicle, Table(seen=on_ground).says(free).effects)
-    assert not of(ToVehicle, Table(seen=on_ground).says(free_of_nobody).effects)
+    assert of(ForwardToVehicle, Table(seen=on_ground).says(free).effects)
+    assert not of(ForwardToVehicle, Table(seen=on_ground).says(free_of_nobody).effects)
 
 
 def test_what_turns_a_camera_that_is_there_is_forwarded() -> None:
     for_camera = command(Cmd.DO_SET_ROI_NONE, CAMERA)
-    assert of(ToVehicle, Table(seen=WITH_CAMERA).says(for_camera).effects)
-    assert not of(ToVehicle, Table(seen=WITH_CAMERA).says(command(Cmd.DO_SET_ROI_NONE, 77)).effects)
+    assert of(ForwardToVehicle, Table(seen=WITH_CAMERA).says(for_camera).effects)
+    assert not of(
+        ForwardToVehicle, Table(seen=WITH_CAMERA).says(command(Cmd.DO_SET_ROI_NONE, 77)).effects
+    )
 
 
 def test_what_is_harmless_is_forwarded_to_whomever() -> None:
     asks = command(Cmd.REQUEST_MESSAGE, NOBODY, 148)
-    assert of(ToVehicle, Table(seen=WITH_CAMERA).says(asks).effects)
-    assert not of(Answers, Table(seen=WITH_CAMERA).says(asks).effects)
+    assert of(ForwardToVehicle, Table(seen=WITH_CAMERA).says(asks).effects)
+    assert not of(Reply, Table(seen=WITH_CAMERA).says(asks).effects)
 
 
 def test_old_clients_send_what_is_about_missions_to_another_component() -> None:
     sets = mavlink.MAVLink_mission_set_current_message(1, 190, 0)
     judged = Table(seen=flying(PX4, mission_items=3)).says(sets)
-    sentences = [each.refusal.sentence for each in of(Refuses, judged.effects)]
+    sentences = [each.refusal.sentence for each in of(ClientRefused, judged.effects)]
     assert not any("component" in each for each in sentences)
     assert judged.effects

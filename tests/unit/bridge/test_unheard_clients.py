@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gcs.bridge.bridge import Bridge
-from gcs.bridge.effects import Answers, BridgeEffect, Notes
+from gcs.bridge.effects import BridgeEffect, LogLine, Reply
 from gcs.gate.policy.parse import parse_policy
 from gcs.protocol.effects import Address
 from gcs.protocol.enforced_sysid import Hears
@@ -24,16 +24,16 @@ def bridge_with(*links: int) -> Bridge:
 
 
 def links_told(effects: list[BridgeEffect]) -> set[int]:
-    return {each.link for each in of(Answers, effects)}
+    return {each.link for each in of(Reply, effects)}
 
 
 def test_each_client_is_told_once_in_the_vehicles_name_and_in_the_log() -> None:
     bridge = bridge_with(1, 2)
     effects = bridge.hears_alone(VEHICLE, ALONE)
     assert links_told(effects) == {1, 2}
-    assert {each.source for each in of(Answers, effects)} == {VEHICLE}
+    assert {each.source for each in of(Reply, effects)} == {VEHICLE}
     assert "vehicle 1 hears system 7 alone (SYSID_ENFORCE), not 245" in texts(effects)
-    assert [note.text.split(":")[0] for note in of(Notes, effects)] == [
+    assert [note.text.split(":")[0] for note in of(LogLine, effects)] == [
         f"udp {link} is system 245, and vehicle 1 hears system 7 alone (SYSID_ENFORCE)"
         for link in (1, 2)
     ]

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.effects import Answers, Notes, ToLink
+from gcs.bridge.effects import ForwardToLink, LogLine, Reply
 from gcs.bridge.peers.client import TOLD_NS
 from gcs.bridge.peers.unverified_clients import TOLD_A_SECOND
 from gcs.gate.effects import Level
@@ -52,18 +52,18 @@ def test_no_text_and_no_frame_of_another_client_is_for_it() -> None:
     told += table.bridge.control_changed(1000, "udp 1", [VEHICLE], table.now_ns)
     told += table.says(HEARTBEAT, 1).effects
     told += table.says(mavlink.MAVLink_ping_message(1, 1, 246, 190), 1).effects
-    assert {each.link for each in of(Answers, told)} == {1}
-    assert not of(ToLink, told)
+    assert {each.link for each in of(Reply, told)} == {1}
+    assert not of(ForwardToLink, told)
 
 
 def test_from_its_first_good_frame_on_it_is_a_client_like_others() -> None:
     table = met()
     (note,) = table.bridge.verify(STRANGER)
-    assert note == Notes(Level.INFO, "udp 2, on link 2, is verified: it has the clients' key")
+    assert note == LogLine(Level.INFO, "udp 2, on link 2, is verified: it has the clients' key")
     table.says(HEARTBEAT, STRANGER)
     position = frame_of(POSITION, 1, 1)
     assert from_vehicle(table, position) == {1: [position.raw], STRANGER: [position.raw]}
-    assert [each.link for each in of(ToLink, table.says(HEARTBEAT, 1).effects)] == [STRANGER]
+    assert [each.link for each in of(ForwardToLink, table.says(HEARTBEAT, 1).effects)] == [STRANGER]
 
 
 def test_the_page_says_so_until_then() -> None:
@@ -74,7 +74,7 @@ def test_the_page_says_so_until_then() -> None:
 
 
 def notes(effects: Iterable[object]) -> list[str]:
-    return [each.text for each in effects if isinstance(each, Notes)]
+    return [each.text for each in effects if isinstance(each, LogLine)]
 
 
 def test_the_log_has_that_it_came_and_went() -> None:
@@ -111,7 +111,7 @@ def test_who_sends_too_much_is_told_once_in_some_seconds_with_all_that_was_dropp
         if second < 7:
             table.bridge.flooded(1, 100)
         effects = table.bridge.second([VEHICLE], table.now_ns)
-        for each in of(Answers, effects):
+        for each in of(Reply, effects):
             assert (each.link, each.source) == (1, VEHICLE)
             assert isinstance(each.message, Statustext)
             assert each.message.severity == mavlink.MAV_SEVERITY_WARNING
@@ -129,14 +129,14 @@ def test_who_sends_too_much_is_told_once_in_some_seconds_with_all_that_was_dropp
 def test_before_a_vehicle_is_heard_the_station_tells_it() -> None:
     table = Table()
     table.bridge.flooded(1, 3)
-    (told,) = of(Answers, table.bridge.second([], table.now_ns))
+    (told,) = of(Reply, table.bridge.second([], table.now_ns))
     assert told.source == OWN
 
 
 def test_who_is_not_verified_is_told_nothing_before_it_is() -> None:
     table = met()
     table.bridge.flooded(STRANGER, 3)
-    assert not of(Answers, table.bridge.second([VEHICLE], table.now_ns))
+    assert not of(Reply, table.bridge.second([VEHICLE], table.now_ns))
     table.bridge.verify(STRANGER)
-    (told,) = of(Answers, table.bridge.second([VEHICLE], table.now_ns + S))
+    (told,) = of(Reply, table.bridge.second([VEHICLE], table.now_ns + S))
     assert told.link == STRANGER

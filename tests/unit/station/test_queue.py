@@ -7,7 +7,7 @@ import pytest
 from gcs.gate.effects import Level
 from gcs.gate.inputs import MissionSeen
 from gcs.session.effects import Finish
-from gcs.session.work import STATION, For, GateAnswered, Log, ToGate, Work
+from gcs.session.work import STATION, ForOwner, GateAnswered, GateInput, Log, Work
 from gcs.station.queue import WorkQueue
 
 
@@ -20,9 +20,9 @@ def line(name: str) -> Log:
     return Log(Level.INFO, "a test", name)
 
 
-def gate(seq: int) -> ToGate:
+def gate(seq: int) -> GateInput:
     """Any input for the gate, told apart by a number."""
-    return ToGate(MissionSeen(seq, 9, False))
+    return GateInput(MissionSeen(seq, 9, False))
 
 
 class Script:
@@ -124,7 +124,7 @@ class Owned:
 
 def test_what_an_item_leads_to_has_its_owner() -> None:
     script = Owned({line("a"): [line("a1"), line("a2")]})
-    script.queue.run([For(3, (line("a"),)), line("b")], 0)
+    script.queue.run([ForOwner(3, (line("a"),)), line("b")], 0)
     assert script.asked == [
         (line("a"), 3),
         (line("a1"), 3),
@@ -134,7 +134,7 @@ def test_what_an_item_leads_to_has_its_owner() -> None:
 
 
 def test_another_owners_work_in_between_gives_the_owner_back() -> None:
-    script = Owned({line("a"): [For(1, (line("of 1"),)), line("a2")]})
+    script = Owned({line("a"): [ForOwner(1, (line("of 1"),)), line("a2")]})
     script.queue.run([line("a"), line("b")], 0, 2)
     assert script.asked == [(line("a"), 2), (line("of 1"), 1), (line("a2"), 2), (line("b"), 2)]
 
@@ -143,7 +143,7 @@ def test_a_gate_input_that_waited_still_has_its_own_owner() -> None:
     """One gate's answer leads to an input for another one: its gate, and no other, gets it."""
     script = Owned(
         {
-            gate(1): [For(1, (gate(2),)), line("still 0"), GateAnswered()],
+            gate(1): [ForOwner(1, (gate(2),)), line("still 0"), GateAnswered()],
             gate(2): [line("of 1"), GateAnswered()],
         }
     )
@@ -161,7 +161,7 @@ def test_a_gate_input_of_the_station_is_no_gates_answer() -> None:
     """It goes to every gate, one after the other: each is done with it before the next has it."""
     script = Owned(
         {
-            gate(1): [For(0, (gate(2),)), For(1, (gate(3),))],
+            gate(1): [ForOwner(0, (gate(2),)), ForOwner(1, (gate(3),))],
             gate(2): [line("x"), GateAnswered()],
             line("x"): [gate(4)],
             gate(4): [GateAnswered()],

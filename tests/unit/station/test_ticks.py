@@ -9,7 +9,7 @@ import pytest
 from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged, Tick
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, SecondDue, SnapshotDue, ToGate, Work
+from gcs.session.work import GateInput, Log, SecondDue, SnapshotDue, Work
 from gcs.station.ticks import Ticks
 from tests.unit.station.vehicles import SECOND_NS
 
@@ -20,7 +20,7 @@ TICK_NS = 50 * MS_NS
 
 def gate_ticks(work: list[Work]) -> list[int]:
     """How late each tick is that the gate hears of."""
-    given = [item.given for item in work if isinstance(item, ToGate)]
+    given = [item.given for item in work if isinstance(item, GateInput)]
     return [tick.lateness_ns for tick in given if isinstance(tick, Tick)]
 
 
@@ -28,7 +28,7 @@ def late(works: list[list[Work]], *, before: bool = False) -> list[bool]:
     """Whether lateness is a condition after each tick: as was told last."""
     stands = []
     for work in works:
-        given = [item.given for item in work if isinstance(item, ToGate)]
+        given = [item.given for item in work if isinstance(item, GateInput)]
         told = [change for change in given if isinstance(change, ConditionChanged)]
         assert all(each.condition is Condition.TICK_LATE for each in told)
         before = told[-1].active if told else before
@@ -57,7 +57,7 @@ def test_every_tick_is_the_gate_s_every_second_one_shows_and_every_twentieth_is_
 
 def test_the_gate_is_asked_before_what_is_shown_of_it() -> None:
     (work,) = on_time(Ticks(START_NS, Times(1.0)), 1)
-    assert isinstance(work[0], ToGate)
+    assert isinstance(work[0], GateInput)
     assert work[-2:] == [SecondDue(), SnapshotDue()]
 
 

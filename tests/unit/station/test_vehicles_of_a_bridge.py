@@ -10,7 +10,7 @@ from gcs.gate.inputs import ConditionChanged
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code
 from gcs.session.speedup_waits import Times
-from gcs.session.work import STATION, For, Log, ToGate, Work
+from gcs.session.work import STATION, ForOwner, GateInput, Log, Work
 from gcs.station.queue import WorkQueue
 from gcs.station.vehicles import MOST_VEHICLES, Vehicles
 from gcs.wire.codec import FrameWriter
@@ -50,7 +50,7 @@ class Fleet:
     def _step(self, item: Work, owner: int, now_ns: int) -> list[Work]:
         self.asked.append((item, owner))
         vehicle = self.vehicles.of_owner(owner)
-        return vehicle.ask_gate(item.given, now_ns) if isinstance(item, ToGate) else []
+        return vehicle.ask_gate(item.given, now_ns) if isinstance(item, GateInput) else []
 
     def hear(self, heard: Frame, link: int = 0, now_ns: int = 1) -> None:
         self._queue.run(self.vehicles.frame(link, heard, now_ns), now_ns)
@@ -157,8 +157,8 @@ def test_a_condition_of_the_station_is_one_of_every_vehicle_s_gate() -> None:
     fleet = Fleet()
     fleet.hear(heartbeat(7))
     failed = ConditionChanged(Condition.RECORDER_FAILED, True, "the disk is full")
-    fleet.run(fleet.vehicles.to_all(ToGate(failed)))
-    fleet.run([For(0, (ToGate(ConditionChanged(Condition.BATTERY_LOW, True)),))])
+    fleet.run(fleet.vehicles.to_all(GateInput(failed)))
+    fleet.run([ForOwner(0, (GateInput(ConditionChanged(Condition.BATTERY_LOW, True)),))])
     fleet.hear(heartbeat(3))
     first, second = fleet.vehicles
     assert set(first.gate.conditions) == {Condition.RECORDER_FAILED, Condition.BATTERY_LOW}
@@ -177,7 +177,7 @@ def test_a_radio_speaks_of_the_vehicles_on_its_link() -> None:
     told = {
         owner
         for item, owner in fleet.asked
-        if isinstance(item, ToGate)
+        if isinstance(item, GateInput)
         and isinstance(item.given, ConditionChanged)
         and item.given.condition is Condition.LINK_POOR
     }

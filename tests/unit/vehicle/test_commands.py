@@ -10,7 +10,7 @@ from gcs.gate.permit import issue
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import GateInput, Log, Work
 from gcs.vehicle.talk.commands import Commands
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import Cmd, Result
@@ -44,7 +44,7 @@ def sent(work: list[Work]) -> int:
 
 def answers(work: list[Work]) -> list[CommandEnded]:
     """What the gate is told."""
-    given = [item.given for item in work if isinstance(item, ToGate)]
+    given = [item.given for item in work if isinstance(item, GateInput)]
     return [answer for answer in given if isinstance(answer, CommandEnded)]
 
 

@@ -16,7 +16,15 @@ from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.requests import GoTo, Land
 from gcs.gate.states import FlightMode, LandedState, State
 from gcs.protocol.autopilot import ARDUPILOT
-from gcs.session.work import GATE_ANSWERED, CheckStart, Decide, Log, PlaceFence, ToGate, Work
+from gcs.session.work import (
+    GATE_ANSWERED,
+    CheckStart,
+    GateInput,
+    GiveVerdict,
+    Log,
+    PlaceFence,
+    Work,
+)
 from gcs.vehicle.gate_port import GatePort, condition
 from gcs.vehicle.talk.telemetry import Telemetry
 from tests.unit.station import told
@@ -83,12 +91,12 @@ def test_a_new_vehicle_has_a_new_gate_and_what_was_wrong_still_is() -> None:
     port.handle(inputs.ConditionChanged(Condition.RECORDER_FAILED, True, "disk full"), 0)
     work = port.meet(vehicle(ARDUPILOT), SECOND_NS)
     assert work == [
-        ToGate(inputs.ClimbEndSeen(0.0)),
+        GateInput(inputs.ClimbEndSeen(0.0)),
         condition(Condition.RECORDER_FAILED, True, "disk full"),
     ]
     assert port.gate.memory.autopilot == "ardupilot"
     assert list(port.gate.conditions) == []
-    for item in of(ToGate, work):
+    for item in of(GateInput, work):
         port.handle(item.given, SECOND_NS)
     assert list(port.gate.conditions) == [Condition.RECORDER_FAILED]
 
@@ -108,13 +116,13 @@ def test_a_goal_s_verdict_carries_the_goal_and_the_numbers() -> None:
     request = GoTo((1.0, 2.0, -3.0))
     verdict = Verdict(7, "operator", request, Ruling.ACCEPTED, None, None, (("m", 1.5),))
     (decide,) = GatePort(DEFAULT, 0).tell(verdict, 1)
-    assert decide == Decide(7, Ruling.ACCEPTED, None, (("m", 1.5),), (1.0, 2.0, -3.0))
+    assert decide == GiveVerdict(7, Ruling.ACCEPTED, None, (("m", 1.5),), (1.0, 2.0, -3.0))
 
 
 def test_another_request_s_verdict_has_no_goal() -> None:
     verdict = Verdict(7, "operator", Land(), Ruling.ACCEPTED, None, (9.0, 9.0, -9.0))
     (decide,) = GatePort(DEFAULT, 0).tell(verdict, 1)
-    assert isinstance(decide, Decide)
+    assert isinstance(decide, GiveVerdict)
     assert decide.goal_ned is None
 
 
@@ -135,7 +143,7 @@ def test_what_the_gate_says_is_a_line_and_its_transition_is_told() -> None:
 def placed(port: GatePort, telemetry: Telemetry | None) -> inputs.VerifierChanged:
     """The verifier that the gate is handed."""
     work = port.place_fence(telemetry)
-    (changed,) = [item.given for item in of(ToGate, work)]
+    (changed,) = [item.given for item in of(GateInput, work)]
     assert isinstance(changed, inputs.VerifierChanged)
     return changed
 
@@ -246,7 +254,7 @@ def breached(port: GatePort, east_m: float) -> bool | None:
     """What a position there tells the gate: outside, inside again, or nothing new."""
     seen = inputs.PositionSeen((0.0, east_m, -5.0), (0.0, 0.0, 0.0), 2000)
     told_now: bool | None = None
-    for item in of(ToGate, port.handle(seen, 2 * SECOND_NS)):
+    for item in of(GateInput, port.handle(seen, 2 * SECOND_NS)):
         changed = item.given
         if isinstance(changed, inputs.ConditionChanged):
             assert changed.condition is Condition.FENCE_BREACHED
@@ -259,7 +267,7 @@ def flying_port() -> GatePort:
     port, telemetry = GatePort(LOCAL, 0), vehicle()
     grounded(port, telemetry)
     telemetry.home_ned = (0.0, 0.0, 0.0)
-    for item in of(ToGate, port.place_fence(telemetry)):
+    for item in of(GateInput, port.place_fence(telemetry)):
         port.handle(item.given, SECOND_NS)
     return port
 

@@ -14,7 +14,7 @@ from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.policy.policy import Policy
 from gcs.protocol.sequence import SequenceCount, SequenceTracker
 from gcs.session.speedup_waits import Times
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.vehicle.health.limit_monitors import Watch
 from gcs.wire.ids import ChargeState
 from gcs.wire.messages import BatteryStatus, FenceStatus, GpsRawInt, Message, RadioStatus, SysStatus
@@ -45,7 +45,7 @@ class Script:
             self.losses.senders[1, 1].lost += lost
             self._take(self.watch.second(self.losses, self.now_ns))
 
-    def _take(self, work: Iterable[ToGate]) -> None:
+    def _take(self, work: Iterable[GateInput]) -> None:
         for item in work:
             assert isinstance(item.given, ConditionChanged)
             self.told.pop(item.given.condition, None)

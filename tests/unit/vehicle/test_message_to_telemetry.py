@@ -11,7 +11,7 @@ from gcs.gate import inputs
 from gcs.gate.condition import Condition
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
-from gcs.session.work import ToGate, Work
+from gcs.session.work import GateInput, Work
 from gcs.vehicle.gate_port import condition
 from gcs.vehicle.message_to_telemetry import updates
 from gcs.wire.messages import GpsGlobalOrigin, Heartbeat, HomePosition
@@ -28,7 +28,7 @@ from tests.unit.station.vehicles import (
 
 def given(found: Iterable[Work]) -> list[inputs.Input]:
     """What the gate is told."""
-    return [item.given for item in found if isinstance(item, ToGate)]
+    return [item.given for item in found if isinstance(item, GateInput)]
 
 
 def origin() -> GpsGlobalOrigin:
@@ -38,7 +38,7 @@ def origin() -> GpsGlobalOrigin:
 def test_a_position_is_heard_with_its_own_stamp_and_kept_with_its_arrival() -> None:
     seen = vehicle()
     heard = list(updates(position(1000, 1.0, 2.0, -3.0), seen, 5 * SECOND_NS))
-    assert ToGate(inputs.PositionSeen((1.0, 2.0, -3.0), (0.0, 0.0, 0.0), 1000)) in heard
+    assert GateInput(inputs.PositionSeen((1.0, 2.0, -3.0), (0.0, 0.0, 0.0), 1000)) in heard
     assert seen.position_ns == 5 * SECOND_NS
 
 
@@ -64,7 +64,9 @@ def test_a_clock_that_went_back_is_a_restart_and_the_origin_is_asked_for_again()
     list(updates(position(60_000), seen, SECOND_NS))
     assert list(updates(position(200), seen, 2 * SECOND_NS)) == []
     heard = list(updates(position(230), seen, 2 * SECOND_NS + 30_000_000))
-    assert ToGate(inputs.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 230, reset=True)) in heard
+    assert (
+        GateInput(inputs.PositionSeen((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 230, reset=True)) in heard
+    )
     assert seen.origin is None
     assert seen.home_ned is None
 
@@ -187,7 +189,7 @@ def test_a_heartbeat_tells_what_its_mode_means(
         mavlink_version=3,
     )
     first, failsafe = updates(beat, vehicle(autopilot), SECOND_NS)
-    assert isinstance(first, ToGate)
+    assert isinstance(first, GateInput)
     told = first.given
     assert isinstance(told, inputs.HeartbeatSeen)
     assert (told.armed, told.mode) == (True, meaning)

@@ -19,7 +19,7 @@ from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.effects import ReadFile, WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
-from gcs.session.work import AskGate, Decide, ToGate, Work
+from gcs.session.work import AskGate, GateInput, GiveVerdict, Work
 from gcs.vehicle.missions.jobs.job import VehicleView
 from gcs.vehicle.missions.missions import PLAN_RECEIVED, PX4_CHECKS_NS, Missions
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -105,16 +105,16 @@ class Script:
 
 
 def refusals(work: list[Work]) -> list[tuple[int, Code]]:
-    verdicts = [item for item in work if isinstance(item, Decide)]
+    verdicts = [item for item in work if isinstance(item, GiveVerdict)]
     return [(v.request_id, v.refusal.code) for v in verdicts if v.refusal is not None]
 
 
 def rulings(work: list[Work]) -> list[Ruling]:
-    return [item.ruling for item in work if isinstance(item, Decide)]
+    return [item.ruling for item in work if isinstance(item, GiveVerdict)]
 
 
 def seen(work: list[Work]) -> list[MissionSeen]:
-    given = [item.given for item in work if isinstance(item, ToGate)]
+    given = [item.given for item in work if isinstance(item, GateInput)]
     return [told for told in given if isinstance(told, MissionSeen)]
 
 
@@ -213,7 +213,7 @@ def test_without_a_mission_of_ours_what_is_on_board_is_looked_up_before_a_start(
     work = script.ask("mission_start")
     assert isinstance(work[0], Send)
     assert work[-1] == AskGate(1, StartMission())
-    assert not any(isinstance(item, ToGate) for item in work)
+    assert not any(isinstance(item, GateInput) for item in work)
 
 
 def test_where_the_policy_wants_no_other_mission_none_is_looked_up() -> None:
@@ -263,11 +263,11 @@ def test_a_px4_is_given_the_time_to_check_what_it_has_taken() -> None:
 def test_after_a_restart_of_the_vehicle_nothing_is_known_of_what_is_on_board() -> None:
     script = Script()
     script.upload(BOX)
-    assert script.missions.forget() == [ToGate(MissionLoaded("", 0))]
+    assert script.missions.forget() == [GateInput(MissionLoaded("", 0))]
     assert script.missions.forget() == []
     assert seen(script.hear(current(1))) == []
     work = script.ask("mission_start")
-    loaded, path = (item.given for item in work if isinstance(item, ToGate))
+    loaded, path = (item.given for item in work if isinstance(item, GateInput))
     assert loaded == MissionLoaded("the mission on board", FOUR)
     assert isinstance(path, MissionPathVerified)
     assert path.within.holds((0.0, 0.0, 0.0))

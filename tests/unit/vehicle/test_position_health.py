@@ -9,7 +9,7 @@ import pytest
 from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged
 from gcs.protocol.autopilot import ARDUPILOT, PX4
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.vehicle.message_to_telemetry import updates
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.messages import EkfStatusReport, EstimatorStatus, GpsRawInt, Message, SysStatus
@@ -106,7 +106,7 @@ class Script:
 
     def _take(self, found: object) -> None:
         for item in found:  # type: ignore[attr-defined]
-            if isinstance(item, ToGate) and isinstance(item.given, ConditionChanged):
+            if isinstance(item, GateInput) and isinstance(item.given, ConditionChanged):
                 self.active.pop(item.given.condition, None)
                 if item.given.active:
                     self.active[item.given.condition] = item.given.text

@@ -13,7 +13,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, ToGate, Work
+from gcs.session.work import GateInput, Log, Work
 from gcs.vehicle.missions.return_places import READING, ReturnPlaces
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import Cmd, MavFrame, MissionResult, MissionType
@@ -125,7 +125,7 @@ class Script:
 
     @property
     def told(self) -> list[ReturnPlacesSeen]:
-        given = [item.given for item in self.work if isinstance(item, ToGate)]
+        given = [item.given for item in self.work if isinstance(item, GateInput)]
         return [each for each in given if isinstance(each, ReturnPlacesSeen)]
 
     @property

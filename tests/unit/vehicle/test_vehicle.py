@@ -16,7 +16,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.protocol.effects import Send
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Log, PlaceFence, ToGate, Work
+from gcs.session.work import GateInput, Log, PlaceFence, Work
 from gcs.vehicle.parameters.failsafes import parameters_of
 from gcs.vehicle.parameters.settings import READ_FIRST, READ_LAST
 from gcs.vehicle.vehicle import Vehicle
@@ -65,7 +65,7 @@ class Script:
 
 
 def gate_inputs(work: Iterable[Work]) -> list[inputs.Input]:
-    return [item.given for item in work if isinstance(item, ToGate)]
+    return [item.given for item in work if isinstance(item, GateInput)]
 
 
 def log(work: Iterable[Work]) -> list[tuple[Level, str]]:

@@ -20,7 +20,7 @@ from gcs.plan.legs import FlightPath
 from gcs.plan.verify import Verification
 from gcs.report import MissionItem
 from gcs.session.effects import Record
-from gcs.session.work import Log, ToGate
+from gcs.session.work import GateInput, Log
 from gcs.vehicle.missions import plans
 from gcs.vehicle.missions.jobs.job import (
     LEFT,
@@ -63,7 +63,7 @@ class BringMission(PreparedJob, BringingJob):
         work += [
             *self.kept(),
             self.accept(answer.evidence),
-            ToGate(MissionLoaded("", 0)),
+            GateInput(MissionLoaded("", 0)),
             OnBoardChanged(None),
         ]
         prepared = self.prepared
@@ -82,7 +82,7 @@ class BringMission(PreparedJob, BringingJob):
         work: list[JobWork] = [
             OnBoardChanged(plans.on_board(plan, prepared.sent)),
             Record(MissionItem(plan.name, points)),
-            ToGate(MissionLoaded(plan.name, len(plan.items))),
+            GateInput(MissionLoaded(plan.name, len(plan.items))),
         ]
         parts = [f"{len(plan.items)} items"]
         if prepared.fence:

@@ -6,7 +6,7 @@ from gcs.gate.effects import OutcomeKind
 from gcs.gate.inputs import MissionLoaded
 from gcs.protocol.mission import MissionClear
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.vehicle.missions.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
@@ -38,7 +38,7 @@ class Clear(Job):
     ) -> list[JobWork]:
         work: list[JobWork] = []
         if self._left.pop(0) is MissionType.MISSION:
-            work += [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
+            work += [OnBoardChanged(None), GateInput(MissionLoaded("", 0))]
         if self._left:
             return work + self._clear(view, now_ns)
         text = ", ".join(GONE[kind] for kind in self._kinds)

@@ -13,7 +13,7 @@ from gcs.plan.writer import write
 from gcs.protocol.mission import MissionDownload
 from gcs.session.effects import WriteFile
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.work import Tell
+from gcs.session.work import TellOperator
 from gcs.vehicle.missions.jobs.job import Asked, Job, JobWork, VehicleView
 from gcs.vehicle.missions.paths import autopilot_name
 from gcs.wire.messages import MissionItemInt
@@ -54,5 +54,5 @@ class Download(Job):
         if not news.error:
             return self.end(OutcomeKind.COMPLETE, None, f"written to {news.path}")
         text = f"{news.path}: {news.error}"
-        trouble = Tell(self.asked.request_id, ipc.Trouble(text, "", ExitCode.BAD_FILE))
+        trouble = TellOperator(self.asked.request_id, ipc.Trouble(text, "", ExitCode.BAD_FILE))
         return [trouble, *self.end(OutcomeKind.ABORTED, Code.BAD_MISSION, text)]

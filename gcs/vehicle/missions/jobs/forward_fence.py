@@ -20,7 +20,7 @@ from gcs.plan.model import Plan
 from gcs.plan.wire import WireItem, items_from_wire
 from gcs.plan.wire_fence import fence_to_wire
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.work import Log, Tell
+from gcs.session.work import Log, TellOperator
 from gcs.vehicle.missions.jobs.facts import landings_on_board
 from gcs.vehicle.missions.jobs.job import NODE, Asked, JobWork, VehicleView
 from gcs.vehicle.missions.jobs.prepared import MOST_FINDINGS
@@ -53,7 +53,7 @@ class RelayPlan(BringingJob):
         """One more rally point that is refused: the log has it, and the client reads it."""
         text = f"{refusal.code.value}: {refusal.sentence}"
         log = Log(LogLevel.WARNING, NODE, f"{self._plan.source}: {text}")
-        return [log, Tell(self.asked.request_id, ipc.Trouble(text))]
+        return [log, TellOperator(self.asked.request_id, ipc.Trouble(text))]
 
     def on_board(self) -> list[JobWork]:
         name, many = NAMES[self._plan.kind], len(self._plan.items)

@@ -36,7 +36,7 @@ from gcs.protocol.mission_rewind import MissionRewind
 from gcs.protocol.transfer import Timing
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Decide, Log, Tell, Work
+from gcs.session.work import GiveVerdict, Log, TellOperator, Work
 from gcs.vehicle.missions.plans import OnBoard
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import MissionType
@@ -188,7 +188,7 @@ class Job(ABC):
                     self._transfer_ends_ns = now_ns + self.asked.times.real_ns(STALLED_NS)
                     client_id, what = self.asked.client_id, self.progress_of()
                     progress = ipc.ProgressEvent(client_id, what, done, total, "items")
-                    work.append(Tell(self.asked.request_id, progress))
+                    work.append(TellOperator(self.asked.request_id, progress))
                 case TransferDone(_, items):
                     work += self.done(items, view, now_ns)
                 case TransferFailed(_, result, text):
@@ -197,15 +197,15 @@ class Job(ABC):
 
     # ------------------------------------------------------------------- verdict, outcome
 
-    def accept(self, evidence: tuple[tuple[str, float], ...] = ()) -> Decide:
-        return Decide(self.asked.request_id, Ruling.ACCEPTED, None, evidence)
+    def accept(self, evidence: tuple[tuple[str, float], ...] = ()) -> GiveVerdict:
+        return GiveVerdict(self.asked.request_id, Ruling.ACCEPTED, None, evidence)
 
     def refuse(self, refusal: Refusal) -> list[JobWork]:
         self.over = True
         return [*refused(self.asked.request_id, self.asked.word, refusal)]
 
     def bad_file(self, text: str, hint: str = "") -> list[JobWork]:
-        trouble = Tell(self.asked.request_id, ipc.Trouble(text, hint, ExitCode.BAD_FILE))
+        trouble = TellOperator(self.asked.request_id, ipc.Trouble(text, hint, ExitCode.BAD_FILE))
         return [trouble, *self.refuse(Refusal(Code.BAD_MISSION, text))]
 
     def end(self, kind: OutcomeKind, code: Code | None, sentence: str) -> list[JobWork]:
@@ -224,7 +224,7 @@ STOPPED = "stopped by an operator"
 def refused(request_id: int, word: str, refusal: Refusal) -> tuple[Work, ...]:
     """The verdict, and a line for the log."""
     text = f"{word}: refused {refusal.code.value}: {refusal.sentence}"
-    return Decide(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)
+    return GiveVerdict(request_id, Ruling.REFUSED, refusal), Log(Level.WARNING, NODE, text)
 
 
 def code_of(result: int | None) -> Code:

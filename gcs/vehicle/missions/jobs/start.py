@@ -12,7 +12,7 @@ from gcs.plan import compare
 from gcs.plan.verify import Verification
 from gcs.plan.wire import WireItem
 from gcs.protocol.mission import MissionDownload
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.vehicle.missions.jobs.job import Asked, JobWork, OnBoardChanged, VehicleView
 from gcs.vehicle.missions.jobs.starting import StartingJob
 from gcs.vehicle.missions.paths import autopilot_name, cleared
@@ -52,7 +52,7 @@ class Start(StartingJob):
         differences = compare.same_meaning(sent, received, name)
         if differences:
             text = f"another mission is on board than was verified: {differences[0]}; {AGAIN}"
-            forget: list[JobWork] = [OnBoardChanged(None), ToGate(MissionLoaded("", 0))]
+            forget: list[JobWork] = [OnBoardChanged(None), GateInput(MissionLoaded("", 0))]
             return forget + self.refuse(Refusal(Code.BAD_MISSION, text))
         return self.verify_anew(view, now_ns)
 

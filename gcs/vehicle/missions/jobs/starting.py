@@ -27,7 +27,7 @@ from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address
 from gcs.protocol.mission_rewind import MissionRewind
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.work import AskGate, ToGate
+from gcs.session.work import AskGate, GateInput
 from gcs.vehicle.missions.jobs.job import Asked, JobWork, VehicleView, code_of
 from gcs.vehicle.missions.jobs.verified import VerifiedJob
 from gcs.vehicle.missions.paths import autopilot_name
@@ -169,7 +169,7 @@ class StartingJob(VerifiedJob):
         self.over = True
         work: list[JobWork] = []
         if self._corners_ned:
-            work.append(ToGate(MissionPathVerified(box_round(self._corners_ned))))
+            work.append(GateInput(MissionPathVerified(box_round(self._corners_ned))))
         return [*work, AskGate(self.asked.request_id, StartMission(self._begin_seq))]
 
     def failed(

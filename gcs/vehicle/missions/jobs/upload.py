@@ -18,7 +18,7 @@ from gcs.plan.writer import write
 from gcs.report import AttachmentItem
 from gcs.session.effects import ReadFile, Record
 from gcs.session.inputs import FileRead, FileWritten
-from gcs.session.work import Tell
+from gcs.session.work import TellOperator
 from gcs.vehicle.missions.jobs.bring_on_board import BringMission
 from gcs.vehicle.missions.jobs.job import Asked, JobWork, VehicleView
 from gcs.vehicle.missions.jobs.prepared import MOST_FINDINGS
@@ -92,14 +92,16 @@ class ClientUpload(BringMission):
 
     def found(self, refusal: Refusal) -> list[JobWork]:
         """The client reads each finding, too."""
-        told = Tell(self.asked.request_id, ipc.Trouble(f"{refusal.code.value}: {refusal.sentence}"))
+        told = TellOperator(
+            self.asked.request_id, ipc.Trouble(f"{refusal.code.value}: {refusal.sentence}")
+        )
         return [*super().found(refusal), told]
 
     def warned(self, warnings: Sequence[str]) -> list[JobWork]:
         """The client reads them too, and those of the check before."""
         remarks = [text for level, text in self.prepared.remarks if level is Level.WARNING]
         told = [
-            Tell(self.asked.request_id, ipc.Trouble(f"warning: {text}"))
+            TellOperator(self.asked.request_id, ipc.Trouble(f"warning: {text}"))
             for text in (*remarks, *warnings)[:MOST_FINDINGS]
         ]
         return [*super().warned(warnings), *told]

@@ -16,7 +16,7 @@ from gcs.plan.wire import WireItem
 from gcs.protocol.mission import MissionDownload
 from gcs.report import MissionItem
 from gcs.session.effects import Record
-from gcs.session.work import ToGate
+from gcs.session.work import GateInput
 from gcs.vehicle.missions.jobs.job import (
     Asked,
     JobWork,
@@ -84,6 +84,6 @@ class Adopt(PreparedJob, StartingJob):
         return [
             OnBoardChanged(on_board(plan, self._received)),
             Record(MissionItem(plan.name, points)),
-            ToGate(MissionLoaded(plan.name, len(plan.items))),
+            GateInput(MissionLoaded(plan.name, len(plan.items))),
             *self.begin_at(None, self._received, view, now_ns),
         ]

@@ -24,7 +24,7 @@ from gcs.protocol.transfer import SPEC_TIMING
 from gcs.session.effects import ReadFile, WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
-from gcs.session.work import AskGate, Decide, ToGate
+from gcs.session.work import AskGate, GateInput, GiveVerdict
 from gcs.steps import drained
 from gcs.vehicle.missions.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView
 from gcs.vehicle.missions.plans import OnBoard, Prepared, on_board, prepare
@@ -258,7 +258,7 @@ class JobScript:
     @property
     def refused(self) -> Code:
         """It is over with one verdict, a refusal, and no outcome."""
-        (verdict,) = self.of(Decide)
+        (verdict,) = self.of(GiveVerdict)
         assert self.job.over
         assert self.of(Outcome) == []
         assert self.of(AskGate) == []
@@ -269,7 +269,7 @@ class JobScript:
     @property
     def accepted(self) -> bool:
         """It has its one verdict, and is under way."""
-        return [verdict.ruling for verdict in self.of(Decide)] == [Ruling.ACCEPTED]
+        return [verdict.ruling for verdict in self.of(GiveVerdict)] == [Ruling.ACCEPTED]
 
     @property
     def outcome(self) -> tuple[OutcomeKind, Code | None]:
@@ -277,20 +277,20 @@ class JobScript:
         (outcome,) = self.of(Outcome)
         assert self.job.over
         assert self.accepted
-        assert self.work.index(self.of(Decide)[0]) < self.work.index(outcome)
+        assert self.work.index(self.of(GiveVerdict)[0]) < self.work.index(outcome)
         assert outcome.request_id == 7
         return outcome.kind, outcome.code
 
     @property
     def sentence(self) -> str:
         """Why, in words."""
-        refusals = [decide.refusal.sentence for decide in self.of(Decide) if decide.refusal]
+        refusals = [decide.refusal.sentence for decide in self.of(GiveVerdict) if decide.refusal]
         return " ".join([*refusals, *(outcome.sentence for outcome in self.of(Outcome))])
 
     @property
     def loaded(self) -> list[tuple[str, int]]:
         """What the gate was told to be on board, in order."""
-        given = [item.given for item in self.of(ToGate)]
+        given = [item.given for item in self.of(GateInput)]
         return [(told.name, told.items) for told in given if isinstance(told, MissionLoaded)]
 
     @property

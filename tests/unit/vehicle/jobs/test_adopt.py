@@ -7,7 +7,7 @@ import pytest
 from gcs.gate.refusal import Code
 from gcs.gate.requests import StartMission
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
-from gcs.session.work import AskGate, Decide
+from gcs.session.work import AskGate, GiveVerdict
 from gcs.vehicle.missions.jobs.job import OnBoardRefused
 from gcs.vehicle.missions.jobs.verify_on_board import Adopt
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -29,7 +29,7 @@ def test_a_mission_that_clears_is_known_as_ours_and_the_gate_decides(autopilot: 
     assert kept is not None
     assert len(kept.sent) == len(script.board.items)
     assert script.of(AskGate) == [AskGate(7, StartMission())]
-    assert script.of(Decide) == []
+    assert script.of(GiveVerdict) == []
     assert script.job.over
 
 

@@ -11,7 +11,7 @@ from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.protocol.effects import Address
 from gcs.session.speedup_waits import Times
-from gcs.session.work import AskGate, Decide
+from gcs.session.work import AskGate, GiveVerdict
 from gcs.vehicle.missions.jobs.check import Check, CheckUnknown
 from gcs.vehicle.missions.missions import Missions
 from gcs.wire.messages import MissionSetCurrent
@@ -84,7 +84,7 @@ def test_it_is_for_the_ground(state: State, code: Code) -> None:
     missions = Missions(Address(255, 190), Times())
     ask = ipc.Ask(70, "mission_check")
     work = missions.ask(7, ask, placed(), state, DEFAULT, START_NS)
-    (refusal,) = [item.refusal for item in work if isinstance(item, Decide)]
+    (refusal,) = [item.refusal for item in work if isinstance(item, GiveVerdict)]
     assert refusal is not None
     assert refusal.code is code
     assert not missions.busy

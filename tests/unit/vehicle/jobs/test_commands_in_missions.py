@@ -19,7 +19,7 @@ from gcs.plan.commands import Kind as ItemKind
 from gcs.plan.item_messages import message_of
 from gcs.plan.wire import WireItem
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
-from gcs.session.work import Decide
+from gcs.session.work import GiveVerdict
 from gcs.vehicle.missions.jobs.check import CheckUnknown
 from gcs.vehicle.missions.jobs.upload import ClientUpload
 from gcs.vehicle.missions.jobs.verify_on_board import Adopt
@@ -227,7 +227,7 @@ def forms_of(command: int) -> list[WireItem]:
 def is_carried(command: int, autopilot: Autopilot) -> bool:
     """In any form, by the default policy."""
     for item in forms_of(command):
-        (verdict,) = upload(item, autopilot=autopilot).run(5.0).of(Decide)
+        (verdict,) = upload(item, autopilot=autopilot).run(5.0).of(GiveVerdict)
         if verdict.refusal is None:
             return True
     return False

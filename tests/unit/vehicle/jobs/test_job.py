@@ -8,7 +8,7 @@ from gcs import ipc
 from gcs.gate.effects import Level, OutcomeKind
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Send
-from gcs.session.work import Decide, Log
+from gcs.session.work import GiveVerdict, Log
 from gcs.vehicle.missions.jobs.download import Download
 from gcs.vehicle.missions.jobs.job import Job, code_of, refused
 from gcs.vehicle.missions.jobs.start import Start
@@ -35,7 +35,7 @@ def logged(script: JobScript) -> list[tuple[Level, str]]:
 def test_a_refusal_is_a_verdict_and_a_warning() -> None:
     refusal = Refusal(Code.BUSY, "another is under way", (("items", 4.0),))
     verdict, line = refused(7, "mission_clear", refusal)
-    assert isinstance(verdict, Decide)
+    assert isinstance(verdict, GiveVerdict)
     assert verdict.refusal == refusal
     assert isinstance(line, Log)
     assert (line.level, line.text) == (

@@ -10,7 +10,7 @@ from gcs.gate.refusal import Code
 from gcs.gate.requests import StartMission
 from gcs.gate.states import State
 from gcs.session.inputs import FileRead
-from gcs.session.work import AskGate, Decide
+from gcs.session.work import AskGate, GiveVerdict
 from gcs.vehicle.missions.jobs.start import Start
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import MissionResult
@@ -37,7 +37,7 @@ def test_the_mission_that_was_verified_and_still_clears_is_the_gate_s_to_start()
     script = start(board())
     assert script.of(AskGate) == [AskGate(7, StartMission())]
     assert script.job.over
-    assert script.of(Decide) == []  # the verdict is the gate's
+    assert script.of(GiveVerdict) == []  # the verdict is the gate's
     assert script.loaded == []
 
 

@@ -16,7 +16,7 @@ from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT
 from gcs.protocol.effects import Send
 from gcs.session.effects import ReadFile
-from gcs.session.work import Decide, Log, ToGate
+from gcs.session.work import GateInput, GiveVerdict, Log
 from gcs.vehicle.missions.jobs.upload import Upload
 from gcs.vehicle.missions.jobs.verified import PAUSE_NS
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -55,7 +55,7 @@ def aborted(code: Code) -> tuple[OutcomeKind, Code]:
 def test_a_mission_is_on_board_once_it_was_read_back_equal() -> None:
     script = upload()
     assert script.of(ReadFile) == [ReadFile(7, "a.plan")]
-    assert script.of(Decide) == []
+    assert script.of(GiveVerdict) == []
     script.read(BOX)
     assert script.outcome == COMPLETE
     assert len(script.board.items) == 4
@@ -74,8 +74,8 @@ def test_the_gate_forgets_the_old_mission_before_a_message_of_the_new_one_leaves
         for i, item in enumerate(script.work)
         if isinstance(item, Send) and isinstance(item.message, MissionCount)
     )
-    assert script.work.index(ToGate(MissionLoaded("", 0))) < first_send
-    assert script.work.index(script.of(Decide)[0]) < first_send
+    assert script.work.index(GateInput(MissionLoaded("", 0))) < first_send
+    assert script.work.index(script.of(GiveVerdict)[0]) < first_send
 
 
 def test_the_file_and_the_path_are_in_the_record() -> None:
@@ -177,7 +177,7 @@ def test_a_return_height_that_is_lost_on_the_way_is_waited_for() -> None:
     back = samples.simple(2, 20, 2, [0, 0, 0, 0, 0, 0, 0])
     script = upload(board).read(plan(samples.waypoint(1, LAT, LON, 10, command=22), back))
     script.run(10.0)
-    assert script.of(Decide) == []
+    assert script.of(GiveVerdict) == []
     board.deaf_to = []
     assert script.run(1.0).outcome == COMPLETE
 
@@ -255,7 +255,7 @@ def test_two_thousand_items_are_verified_in_steps() -> None:
     board.deaf_to = [MissionCount]
     script = upload(board).read(plan(samples.waypoint(1, LAT, LON, 10, command=22), *way))
     steps = 0
-    while script.of(Decide) == []:
+    while script.of(GiveVerdict) == []:
         assert script.job.deadline_ns == script.now_ns + PAUSE_NS
         script.wake()
         script.telemetry.position_ns = script.now_ns
