@@ -1,7 +1,7 @@
 """Armings of the vehicles, whoever asks for them, and what clients have chosen to fly after one.
 
-A take-off or a mission that a client asks for before it arms is kept until then (`peers/client.py`); the
-mode of a mission is set on the vehicle meanwhile (`mission_mode.py`).
+A take-off or a mission that a client asks for before it arms is kept until then
+(`peers/client.py`); the mode of a mission is set on the vehicle meanwhile (`mission_mode.py`).
 """
 
 from __future__ import annotations

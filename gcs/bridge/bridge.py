@@ -1,7 +1,7 @@
 """The bridge: all MAVLink clients of one station, before its vehicles.
 
-Who is there (`peers/client.py`), where frames go (`routing.py`), what is done with each (`judge/`), and
-what is answered (`dialogue.py`).  Frames of the vehicle's side are not decoded here.
+Who is there (`peers/client.py`), where frames go (`routing.py`), what is done with each (`judge/`),
+and what is answered (`dialogue.py`). Frames of the vehicle's side are not decoded here.
 """
 
 from __future__ import annotations

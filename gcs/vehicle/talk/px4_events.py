@@ -1,4 +1,4 @@
-"""PX4's events in the session: heard in order, and handed to `vehicle_texts.py`, which makes texts of them.
+"""PX4's events: heard in order, and handed to `vehicle_texts.py`, which makes texts of them.
 
 An event that is not known here is told by its number, at debug level: its text, which PX4 says too,
 is told like any other.
