@@ -1,14 +1,16 @@
 """How each personality speaks MAVLink, as tables; how it flies is the autopilot's own."""
+# ruff: noqa: RUF009  # `each` builds nothing that a later instance could change
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import nan
-from typing import Final
+from typing import Final, TypeAlias
 
 from vehicle_sim.autopilot.firmware import FLIGHT_SW_VERSION, Firmware
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import MODES, Personality
+from vehicle_sim.autopilot.personality_table import COPTER_ONLY, PX4_ONLY, each, tables
 from vehicle_sim.numerics.vectors import Quat
 from vehicle_sim.services.message_requests import ARDUPILOT_REQUESTS, PX4_REQUESTS, Requests
 from vehicle_sim.wire import messages as m
@@ -20,71 +22,6 @@ MESSAGE_INTERVAL_MIN_NS: Final = 5_000_000
 
 def _hz(rates: dict[type[m.Message], float]) -> dict[int, int]:
     return {m.IDS[kind]: round(1e9 / rate) for kind, rate in rates.items()}
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Profile:
-    name: Personality
-    autopilot: int  # MAV_AUTOPILOT
-    flight_sw_version: int
-    capabilities: Capability
-    intervals_ns: dict[int, int]  # message number -> what is sent unasked
-    rate_parameters: dict[str, DataStream]  # which parameters say what more is sent unasked
-    fixed: frozenset[int]  # streams whose interval cannot be set
-    bytewise_parameters: bool
-    hash_check: bool  # a parameter list begins with _HASH_CHECK
-    parameter_errors: bool  # PARAM_ERROR for what is not taken
-    item_request: type[m.MissionRequest] | type[m.MissionRequestInt]
-    first_item_request: type[m.MissionRequest] | type[m.MissionRequestInt]
-    float_items: bool  # MISSION_REQUEST is answered with the float MISSION_ITEM
-    home_is_item_0: bool
-    mission_retry_ns: int
-    mission_retries: int
-    plan_max: dict[MissionType, int]  # items that there is room for
-    partial_lists: bool  # MISSION_WRITE_PARTIAL_LIST
-    takeoff_amsl: bool  # NAV_TAKEOFF's height is AMSL, else above home
-    acks_set_mode: bool
-    reached_repeats: int  # MISSION_ITEM_REACHED, how often each
-    camera_feedback: bool
-    guided_items: bool  # MISSION_ITEM with current = 2 or 3
-    offset_frames: bool  # LOCAL_OFFSET_NED, BODY_OFFSET_NED, position in BODY_NED
-    whole_masks: bool  # any ignore bit of a vector ignores all three axes
-    first_log: int  # number of the oldest log in a LOG_ENTRY
-    log_frame_ns: int  # between two LOG_DATA of 90 bytes
-    logs_while_armed: bool  # logs are listed and sent in flight too
-    component_metadata: bool  # COMPONENT_METADATA and its files; without it @PARAM/param.pck
-    unheard: frozenset[Cmd]  # commands that nobody on board answers
-    banner: tuple[str, ...]  # DO_SEND_BANNER, and to who asks for the list of parameters
-    unsigned_allowed: frozenset[int]  # messages that are taken unsigned under a key
-    camera: bool  # there is one
-    absent: dict[Cmd, Result]  # answers to commands for equipment that there is not
-    requests: Requests  # what REQUEST_MESSAGE is answered
-    untold: frozenset[type[m.Message]]  # messages that it never sends
-    vtol_state: int  # MAV_VTOL_STATE
-    flies_to_places: frozenset[str]  # modes with a POSITION_TARGET_GLOBAL_INT
-    flies_to_places_in_air: frozenset[str]  # modes that have one only after the take-off
-    home_attitude: Quat  # HOME_POSITION.q
-    targets_while_disarmed: bool  # the controllers run on the ground too, and tell their targets
-    unused_channel_us: int  # RC_CHANNELS
-    channels_without_radio: bool  # RC_CHANNELS is sent though nothing is heard
-    events: bool  # the events interface; a text that is an event too ends with a TAB
-    tells_log_path: bool  # a STATUSTEXT when a log begins
-    no_such_item: MissionResult  # MISSION_REQUEST beyond the last
-    numbers_plans: bool  # `opaque_id` and `mission_id`, not recorded of 4.7 and 1.14
-    refuses_other_components: bool  # commands to one that there is not get an answer
-    protocol_version_command: bool  # REQUEST_PROTOCOL_VERSION is known
-    names_unknown_message: bool  # SET_MESSAGE_INTERVAL is DENIED with a text, else FAILED
-    refuses_fast_streams: bool  # SET_MESSAGE_INTERVAL below FASTEST_US: DENIED with a text
-    names_wrong_frame: bool  # DO_REPOSITION is DENIED with a text, else UNSUPPORTED
-    names_command: bool  # a text for NAV_LAND and NAV_RETURN_TO_LAUNCH, not for the mode
-    sub_modes: bool  # DO_SET_MODE has a main and a sub mode
-    reposition_needs_change_flag: bool  # MAV_DO_REPOSITION_FLAGS_CHANGE_MODE
-    reposition_by_long: bool  # DO_REPOSITION as COMMAND_LONG too
-    speed_by_type: bool  # DO_CHANGE_SPEED looks at SPEED_TYPE, and refuses what is no speed
-    reboot_nothing: Result  # PREFLIGHT_REBOOT_SHUTDOWN with 0 for the autopilot
-    roi_is_location: bool  # DO_SET_ROI is taken for a location whatever its MAV_ROI says
-    storage_resets_only: bool  # PREFLIGHT_STORAGE neither reads nor writes
-    compass_by_yaw_texts: tuple[tuple[int, str], ...]  # FIXED_MAG_CAL_YAW: severity and text
 
 
 _COMMON: Final = (
@@ -100,196 +37,154 @@ _COMMON: Final = (
     | Capability.MISSION_FENCE
     | Capability.MISSION_RALLY
 )
-
-PX4: Final = Profile(
-    name="px4",
-    autopilot=12,
-    flight_sw_version=FLIGHT_SW_VERSION["1.14"],
-    capabilities=_COMMON | Capability.PARAM_ENCODE_BYTEWISE | Capability.SET_ACTUATOR_TARGET,
-    intervals_ns=_hz(
-        {
-            m.Heartbeat: 1,
-            m.SysStatus: 2,
-            m.ExtendedSysState: 5,
-            m.LocalPositionNed: 50,
-            m.Attitude: 50,
-            m.AttitudeQuaternion: 20,
-            m.GlobalPositionInt: 20,
-            m.PositionTargetLocalNed: 10,
-            m.PositionTargetGlobalInt: 10,
-            m.AttitudeTarget: 50,
-            m.OrbitExecutionStatus: 5,
-            m.RcChannels: 5,
-            m.ManualControl: 5,
-            m.HighresImu: 10,
-            m.ServoOutputRaw: 50,
-            m.Altitude: 10,
-            m.WindCov: 0.5,
-            m.Vibration: 0.5,
-            m.VfrHud: 5,
-            m.GpsRawInt: 5,
-            m.BatteryStatus: 1,
-            m.EstimatorStatus: 1,
-            m.ScaledPressure: 1,
-            m.SystemTime: 1,
-            m.MissionCurrent: 1,
-            m.HomePosition: 0.5,
-            m.CurrentMode: 0.5,
-            m.CurrentEventSequence: 1 / 3,
-        }
-    ),
-    rate_parameters={},
-    fixed=frozenset({m.IDS[m.MissionCurrent], m.IDS[m.Heartbeat]}),
-    bytewise_parameters=True,
-    hash_check=True,
-    parameter_errors=False,
-    item_request=m.MissionRequestInt,
-    first_item_request=m.MissionRequest,
-    float_items=False,
-    home_is_item_0=False,
-    mission_retry_ns=250_000_000,
-    mission_retries=20,
-    plan_max={MissionType.MISSION: 2000, MissionType.FENCE: 64, MissionType.RALLY: 32},
-    partial_lists=False,
-    takeoff_amsl=True,
-    acks_set_mode=False,
-    reached_repeats=11,
-    camera_feedback=False,
-    guided_items=False,
-    offset_frames=False,
-    whole_masks=False,
-    first_log=0,
-    log_frame_ns=250_000,
-    logs_while_armed=True,
-    component_metadata=True,
-    unheard=frozenset(
-        {
-            Cmd.NAV_DELAY,
-            Cmd.DO_DIGICAM_CONTROL,
-            Cmd.DO_MOUNT_CONTROL,
-            Cmd.DO_SET_CAM_TRIGG_DIST,
-            Cmd.DO_GRIPPER,
-            Cmd.DO_WINCH,  # by memory
-            Cmd.DO_MOUNT_CONTROL_QUAT,
-            Cmd.PREFLIGHT_SET_SENSOR_OFFSETS,
-            Cmd.PREFLIGHT_UAVCAN,
-            Cmd.DO_GIMBAL_MANAGER_PITCHYAW,
-            Cmd.LOGGING_STOP,
-            Cmd.DO_VTOL_TRANSITION,
-        }
-    ),
-    banner=(),
-    unsigned_allowed=PX4_UNSIGNED,
-    camera=True,
-    absent={},
-    requests=PX4_REQUESTS,
-    untold=frozenset({m.RcChannelsRaw, m.FenceStatus, m.Wind, m.RelayStatus}),
-    vtol_state=0,  # UNDEFINED
-    flies_to_places=frozenset(name for name in MODES["px4"] if name.startswith("AUTO.")),
-    flies_to_places_in_air=frozenset(),
-    home_attitude=(1.0, 0.0, 0.0, 0.0),
-    targets_while_disarmed=True,
-    unused_channel_us=65535,
-    channels_without_radio=False,
-    events=True,
-    tells_log_path=True,
-    no_such_item=MissionResult.ERROR,
-    numbers_plans=False,
-    refuses_other_components=True,
-    protocol_version_command=True,
-    names_unknown_message=False,
-    refuses_fast_streams=False,
-    names_wrong_frame=False,
-    names_command=True,
-    sub_modes=True,
-    reposition_needs_change_flag=True,
-    reposition_by_long=True,
-    speed_by_type=False,
-    reboot_nothing=Result.ACCEPTED,
-    roi_is_location=False,
-    storage_resets_only=False,
-    compass_by_yaw_texts=(
-        (2, "Assuming vehicle is facing heading 0.0 degrees"),
-        (6, "Mag quick calibration finished"),
-    ),
+_PX4_CAN: Final = Capability.PARAM_ENCODE_BYTEWISE | Capability.SET_ACTUATOR_TARGET
+_COPTER_CAN: Final = (
+    Capability.SET_POSITION_TARGET_GLOBAL_INT | Capability.TERRAIN | Capability.COMPASS_CALIBRATION
 )
-
-ARDUPILOT: Final = Profile(
-    name="ardupilot",
-    autopilot=3,
-    flight_sw_version=FLIGHT_SW_VERSION["4.5"],
-    capabilities=_COMMON
-    | Capability.SET_POSITION_TARGET_GLOBAL_INT
-    | Capability.TERRAIN
-    | Capability.COMPASS_CALIBRATION,
-    intervals_ns=_hz({m.Heartbeat: 1}),
-    rate_parameters={
-        "SR0_RAW_SENS": DataStream.RAW_SENSORS,
-        "SR0_EXT_STAT": DataStream.EXTENDED_STATUS,
-        "SR0_RC_CHAN": DataStream.RC_CHANNELS,
-        "SR0_POSITION": DataStream.POSITION,
-        "SR0_EXTRA1": DataStream.EXTRA1,
-        "SR0_EXTRA2": DataStream.EXTRA2,
-        "SR0_EXTRA3": DataStream.EXTRA3,
-    },
-    fixed=frozenset(),
-    bytewise_parameters=False,
-    hash_check=False,
-    parameter_errors=False,
-    item_request=m.MissionRequest,
-    first_item_request=m.MissionRequest,
-    float_items=True,
-    home_is_item_0=True,
-    mission_retry_ns=1_000_000_000,
-    mission_retries=20,
-    plan_max={MissionType.MISSION: 724, MissionType.FENCE: 100, MissionType.RALLY: 100},
-    partial_lists=True,
-    takeoff_amsl=False,
-    acks_set_mode=True,
-    reached_repeats=1,
-    camera_feedback=True,
-    guided_items=True,
-    offset_frames=True,
-    whole_masks=True,
-    first_log=1,
-    log_frame_ns=612_000,
-    logs_while_armed=False,
-    component_metadata=False,
-    unheard=frozenset(),
-    banner=("ArduCopter V4.6.0", "vehicle-sim", "Frame: QUAD/X"),
-    unsigned_allowed=RADIOS,
-    camera=True,
-    absent={},
-    requests=ARDUPILOT_REQUESTS,
-    untold=frozenset({m.ManualControl, m.ActuatorOutputStatus, m.EscStatus, m.EscInfo, m.Ping}),
-    vtol_state=3,  # MC: a copter is a VTOL that flies as a multicopter
-    flies_to_places=frozenset({"AUTO", "RTL"}),
-    flies_to_places_in_air=frozenset({"GUIDED"}),
-    home_attitude=(nan, nan, nan, nan),
-    targets_while_disarmed=False,
-    unused_channel_us=0,
-    channels_without_radio=True,
-    events=False,
-    tells_log_path=False,
-    no_such_item=MissionResult.INVALID_SEQUENCE,
-    numbers_plans=False,
-    refuses_other_components=False,
-    protocol_version_command=False,
-    names_unknown_message=True,
-    refuses_fast_streams=False,
-    names_wrong_frame=True,
-    names_command=False,
-    sub_modes=False,
-    reposition_needs_change_flag=False,
-    reposition_by_long=False,
-    speed_by_type=True,
-    reboot_nothing=Result.UNSUPPORTED,
-    roi_is_location=True,
-    storage_resets_only=True,
-    compass_by_yaw_texts=(),
+_PX4_SENDS: Final = _hz(
+    {
+        m.Heartbeat: 1,
+        m.SysStatus: 2,
+        m.ExtendedSysState: 5,
+        m.LocalPositionNed: 50,
+        m.Attitude: 50,
+        m.AttitudeQuaternion: 20,
+        m.GlobalPositionInt: 20,
+        m.PositionTargetLocalNed: 10,
+        m.PositionTargetGlobalInt: 10,
+        m.AttitudeTarget: 50,
+        m.OrbitExecutionStatus: 5,
+        m.RcChannels: 5,
+        m.ManualControl: 5,
+        m.HighresImu: 10,
+        m.ServoOutputRaw: 50,
+        m.Altitude: 10,
+        m.WindCov: 0.5,
+        m.Vibration: 0.5,
+        m.VfrHud: 5,
+        m.GpsRawInt: 5,
+        m.BatteryStatus: 1,
+        m.EstimatorStatus: 1,
+        m.ScaledPressure: 1,
+        m.SystemTime: 1,
+        m.MissionCurrent: 1,
+        m.HomePosition: 0.5,
+        m.CurrentMode: 0.5,
+        m.CurrentEventSequence: 1 / 3,
+    }
 )
+_PX4_FIXED: Final = frozenset({m.IDS[m.MissionCurrent], m.IDS[m.Heartbeat]})
+_RATES: Final = {
+    "SR0_RAW_SENS": DataStream.RAW_SENSORS,
+    "SR0_EXT_STAT": DataStream.EXTENDED_STATUS,
+    "SR0_RC_CHAN": DataStream.RC_CHANNELS,
+    "SR0_POSITION": DataStream.POSITION,
+    "SR0_EXTRA1": DataStream.EXTRA1,
+    "SR0_EXTRA2": DataStream.EXTRA2,
+    "SR0_EXTRA3": DataStream.EXTRA3,
+}
+_PX4_UNHEARD: Final = frozenset(
+    {
+        Cmd.NAV_DELAY,
+        Cmd.DO_DIGICAM_CONTROL,
+        Cmd.DO_MOUNT_CONTROL,
+        Cmd.DO_SET_CAM_TRIGG_DIST,
+        Cmd.DO_GRIPPER,
+        Cmd.DO_WINCH,  # by memory
+        Cmd.DO_MOUNT_CONTROL_QUAT,
+        Cmd.PREFLIGHT_SET_SENSOR_OFFSETS,
+        Cmd.PREFLIGHT_UAVCAN,
+        Cmd.DO_GIMBAL_MANAGER_PITCHYAW,
+        Cmd.LOGGING_STOP,
+        Cmd.DO_VTOL_TRANSITION,
+    }
+)
+_BANNER: Final = ("ArduCopter V4.6.0", "vehicle-sim", "Frame: QUAD/X")
+_PX4_UNTOLD: Final[frozenset[type[m.Message]]] = frozenset(
+    {m.RcChannelsRaw, m.FenceStatus, m.Wind, m.RelayStatus}
+)
+_COPTER_UNTOLD: Final[frozenset[type[m.Message]]] = frozenset(
+    {m.ManualControl, m.ActuatorOutputStatus, m.EscStatus, m.EscInfo, m.Ping}
+)
+_PX4_GOES: Final = frozenset(name for name in MODES["px4"] if name.startswith("AUTO."))
+_COPTER_GOES: Final = frozenset({"AUTO", "RTL"})
+_COMPASS_BY_YAW: Final = (
+    (2, "Assuming vehicle is facing heading 0.0 degrees"),
+    (6, "Mag quick calibration finished"),
+)
+Request: TypeAlias = type[m.MissionRequest] | type[m.MissionRequestInt]
 
-PROFILES: Final[dict[Personality, Profile]] = {"px4": PX4, "ardupilot": ARDUPILOT}
+
+def _room(mission: int, fence: int, rally: int) -> dict[MissionType, int]:
+    return {MissionType.MISSION: mission, MissionType.FENCE: fence, MissionType.RALLY: rally}
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Profile:
+    name: Personality = each("px4", "ardupilot")
+    autopilot: int = each(12, 3)  # MAV_AUTOPILOT
+    flight_sw_version: int = each(FLIGHT_SW_VERSION["1.14"], FLIGHT_SW_VERSION["4.5"])
+    capabilities: Capability = each(_COMMON | _PX4_CAN, _COMMON | _COPTER_CAN)
+    intervals_ns: dict[int, int] = each(_PX4_SENDS, _hz({m.Heartbeat: 1}))  # those sent unasked
+    rate_parameters: dict[str, DataStream] = each({}, _RATES)  # what more is sent unasked
+    fixed: frozenset[int] = each(_PX4_FIXED, frozenset())  # streams whose interval cannot be set
+    bytewise_parameters: bool = PX4_ONLY
+    hash_check: bool = PX4_ONLY  # a parameter list begins with _HASH_CHECK
+    parameter_errors: bool = False  # PARAM_ERROR for what is not taken
+    item_request: Request = each(m.MissionRequestInt, m.MissionRequest)
+    first_item_request: Request = m.MissionRequest
+    float_items: bool = COPTER_ONLY  # MISSION_REQUEST is answered with the float MISSION_ITEM
+    home_is_item_0: bool = COPTER_ONLY
+    mission_retry_ns: int = each(250_000_000, 1_000_000_000)
+    mission_retries: int = 20
+    plan_max: dict[MissionType, int] = each(_room(2000, 64, 32), _room(724, 100, 100))  # items
+    partial_lists: bool = COPTER_ONLY  # MISSION_WRITE_PARTIAL_LIST
+    takeoff_amsl: bool = PX4_ONLY  # NAV_TAKEOFF's height is AMSL, else above home
+    acks_set_mode: bool = COPTER_ONLY
+    reached_repeats: int = each(11, 1)  # MISSION_ITEM_REACHED, how often each
+    camera_feedback: bool = COPTER_ONLY
+    guided_items: bool = COPTER_ONLY  # MISSION_ITEM with current = 2 or 3
+    offset_frames: bool = COPTER_ONLY  # LOCAL_OFFSET_NED, BODY_OFFSET_NED, position in BODY_NED
+    whole_masks: bool = COPTER_ONLY  # any ignore bit of a vector ignores all three axes
+    first_log: int = each(0, 1)  # number of the oldest log in a LOG_ENTRY
+    log_frame_ns: int = each(250_000, 612_000)  # between two LOG_DATA of 90 bytes
+    logs_while_armed: bool = PX4_ONLY  # logs are listed and sent in flight too
+    component_metadata: bool = PX4_ONLY  # and its files; without it @PARAM/param.pck
+    unheard: frozenset[Cmd] = each(_PX4_UNHEARD, frozenset())  # nobody on board answers them
+    banner: tuple[str, ...] = each((), _BANNER)  # DO_SEND_BANNER, and before all parameters
+    unsigned_allowed: frozenset[int] = each(PX4_UNSIGNED, RADIOS)  # messages, under a key
+    camera: bool = True  # there is one
+    absent: dict[Cmd, Result] = each({}, {})  # answers to commands for equipment that is not there
+    requests: Requests = each(PX4_REQUESTS, ARDUPILOT_REQUESTS)  # what REQUEST_MESSAGE is answered
+    untold: frozenset[type[m.Message]] = each(_PX4_UNTOLD, _COPTER_UNTOLD)  # never sent
+    vtol_state: int = each(0, 3)  # MAV_VTOL_STATE: UNDEFINED; a multicopter
+    flies_to_places: frozenset[str] = each(_PX4_GOES, _COPTER_GOES)  # POSITION_TARGET_GLOBAL_INT
+    flies_to_places_in_air: frozenset[str] = each(frozenset(), frozenset({"GUIDED"}))
+    home_attitude: Quat = each((1.0, 0.0, 0.0, 0.0), (nan, nan, nan, nan))  # HOME_POSITION.q
+    targets_while_disarmed: bool = PX4_ONLY  # the controllers run on the ground too
+    unused_channel_us: int = each(65535, 0)  # RC_CHANNELS
+    channels_without_radio: bool = COPTER_ONLY  # RC_CHANNELS is sent though nothing is heard
+    events: bool = PX4_ONLY  # the events interface; a text that is an event too ends with a TAB
+    tells_log_path: bool = PX4_ONLY  # a STATUSTEXT when a log begins
+    no_such_item: MissionResult = each(MissionResult.ERROR, MissionResult.INVALID_SEQUENCE)
+    numbers_plans: bool = False  # `opaque_id` and `mission_id`, not recorded of 4.7 and 1.14
+    refuses_other_components: bool = PX4_ONLY  # commands to one that there is not get an answer
+    protocol_version_command: bool = PX4_ONLY  # REQUEST_PROTOCOL_VERSION is known
+    names_unknown_message: bool = COPTER_ONLY  # SET_MESSAGE_INTERVAL: DENIED, else FAILED
+    refuses_fast_streams: bool = False  # SET_MESSAGE_INTERVAL below FASTEST_US: DENIED with a text
+    names_wrong_frame: bool = COPTER_ONLY  # DO_REPOSITION is DENIED with a text, else UNSUPPORTED
+    names_command: bool = PX4_ONLY  # a text for NAV_LAND and NAV_RETURN_TO_LAUNCH, not for the mode
+    sub_modes: bool = PX4_ONLY  # DO_SET_MODE has a main and a sub mode
+    reposition_needs_change_flag: bool = PX4_ONLY  # MAV_DO_REPOSITION_FLAGS_CHANGE_MODE
+    reposition_by_long: bool = PX4_ONLY  # DO_REPOSITION as COMMAND_LONG too
+    speed_by_type: bool = COPTER_ONLY  # DO_CHANGE_SPEED refuses what is no SPEED_TYPE or speed
+    reboot_nothing: Result = each(Result.ACCEPTED, Result.UNSUPPORTED)  # with 0 for the autopilot
+    roi_is_location: bool = COPTER_ONLY  # DO_SET_ROI is, whatever its MAV_ROI says
+    storage_resets_only: bool = COPTER_ONLY  # PREFLIGHT_STORAGE neither reads nor writes
+    compass_by_yaw_texts: tuple[tuple[int, str], ...] = each(_COMPASS_BY_YAW, ())
+
+
+PROFILES: Final[dict[Personality, Profile]] = tables(Profile)
 """Of the firmware that is played unless another is asked for."""
 
 
