@@ -8,6 +8,7 @@ inside, unless FENCE_OPTIONS allows it.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import ceil
 
 from vehicle_sim.autopilot.acting_failsafe import ActingFailsafe
@@ -38,30 +39,19 @@ _WITHOUT = frozenset({Action.POSITION, Action.HOLD, Action.BRAKE, Action.RETURN,
 _GRACE_COMES_BACK = 4.0
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class FailsafeActions:
     """Failsafes, carried out."""
 
-    def __init__(
-        self,
-        state: FlightState,
-        battery: BatteryMonitor,
-        bounds: Bounds,
-        health_checks: HealthChecks,
-        stream: SetpointStream,
-        acting: ActingFailsafe,
-        transitions: Transitions,
-        failsafe_checks: FailsafeChecks,
-        failure_detector: FailureDetector,
-    ) -> None:
-        self._state = state
-        self._battery = battery
-        self._bounds = bounds
-        self._health_checks = health_checks
-        self._stream = stream
-        self._acting = acting
-        self._transitions = transitions
-        self._failsafe_checks = failsafe_checks
-        self._failure_detector = failure_detector
+    _state: FlightState
+    _battery: BatteryMonitor
+    _bounds: Bounds
+    _health_checks: HealthChecks
+    _stream: SetpointStream
+    _acting: ActingFailsafe
+    _transitions: Transitions
+    _failsafe_checks: FailsafeChecks
+    _failure_detector: FailureDetector
 
     def gcs_heard(self, wall_ns: int) -> None:
         cleared = self._failsafe_checks.station_heard(wall_ns)

@@ -5,6 +5,7 @@ Requests answer at once; what they lead to is seen in the state.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 
 from vehicle_sim.autopilot.bounds import Bounds
@@ -29,26 +30,17 @@ from vehicle_sim.numerics.vectors import Vec3
 _LOWEST_GOAL_UP_M = 0.5
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class FlightRequests:
     """Take-off, goals, speeds, setpoints, home."""
 
-    def __init__(
-        self,
-        state: FlightState,
-        bounds: Bounds,
-        failsafe_actions: FailsafeActions,
-        mode_tasks: ModeTasks,
-        mode_changes: ModeChanges,
-        transitions: Transitions,
-        stream: SetpointStream,
-    ) -> None:
-        self._state = state
-        self._bounds = bounds
-        self._failsafe_actions = failsafe_actions
-        self._mode_tasks = mode_tasks
-        self._mode_changes = mode_changes
-        self._transitions = transitions
-        self._stream = stream
+    _state: FlightState
+    _bounds: Bounds
+    _failsafe_actions: FailsafeActions
+    _mode_tasks: ModeTasks
+    _mode_changes: ModeChanges
+    _transitions: Transitions
+    _stream: SetpointStream
 
     def take_off(self, up_above_home_m: float | None) -> Result:
         state = self._state

@@ -7,6 +7,7 @@ millimetre; on the WGS84 ellipsoid instead they would be 2-3 m off per kilometre
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import acos, asin, atan2, cos, degrees, radians, sin, sqrt
 from typing import Final, Protocol
 
@@ -61,13 +62,11 @@ class AzimuthalEquidistant:
         return Geodetic(degrees(lat), degrees(lon), alt_amsl_m)
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class MeanLatitude:
     """ArduPilot's Location: a fixed length per 1e-7 degree, longitude by the mean latitude."""
 
-    __slots__ = ("_origin",)
-
-    def __init__(self, origin: Geodetic) -> None:
-        self._origin = origin
+    _origin: Geodetic
 
     def to_local(self, where: Geodetic) -> Vec3:
         origin = self._origin

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import acos, asin, atan2, sqrt
 
 from vehicle_sim.autopilot.battery_monitor import BatteryMonitor
@@ -32,28 +33,20 @@ to arm was not recorded.
 """
 
 
+@dataclass(eq=False, repr=False)
 class HealthChecks:
     """Looks, and decides nothing."""
 
-    def __init__(
-        self,
-        state: FlightState,
-        battery: BatteryMonitor,
-        geofence: Geofence,
-        mission_checks: MissionChecks,
-        radio: Radio,
-        stream: SetpointStream,
-        failsafe_checks: FailsafeChecks,
-        failure_detector: FailureDetector,
-    ) -> None:
-        self._state = state
-        self._battery = battery
-        self._geofence = geofence
-        self._mission_checks = mission_checks
-        self._radio = radio
-        self._stream = stream
-        self._failsafe_checks = failsafe_checks
-        self._failure_detector = failure_detector
+    _state: FlightState
+    _battery: BatteryMonitor
+    _geofence: Geofence
+    _mission_checks: MissionChecks
+    _radio: Radio
+    _stream: SetpointStream
+    _failsafe_checks: FailsafeChecks
+    _failure_detector: FailureDetector
+
+    def __post_init__(self) -> None:
         self.restart()
 
     def restart(self) -> None:

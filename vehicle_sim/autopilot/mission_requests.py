@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from vehicle_sim.autopilot.arming_requests import ArmingRequests
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import PlanItem, Result
@@ -12,24 +14,16 @@ from vehicle_sim.autopilot.mode_changes import ModeChanges
 from vehicle_sim.autopilot.transitions import Transitions
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class MissionRequests:
     """Swap it, start it, go to an item of it."""
 
-    def __init__(
-        self,
-        state: FlightState,
-        mission: Mission,
-        mission_checks: MissionChecks,
-        arming: ArmingRequests,
-        mode_changes: ModeChanges,
-        transitions: Transitions,
-    ) -> None:
-        self._state = state
-        self._mission = mission
-        self._mission_checks = mission_checks
-        self._arming = arming
-        self._mode_changes = mode_changes
-        self._transitions = transitions
+    _state: FlightState
+    _mission: Mission
+    _mission_checks: MissionChecks
+    _arming: ArmingRequests
+    _mode_changes: ModeChanges
+    _transitions: Transitions
 
     def check_plan(self, items: tuple[PlanItem, ...]) -> tuple[int, str] | None:
         return plans.check(items, self._state.personality)

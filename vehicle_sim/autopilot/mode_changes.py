@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from vehicle_sim.autopilot.failsafe_actions import FailsafeActions
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import Landed, Result
@@ -26,24 +28,16 @@ from vehicle_sim.autopilot.transitions import Transitions
 _CLEAR_M = 0.5  # less than this above home, and a take-off has not left the ground
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class ModeChanges:
     """Each request is answered at once."""
 
-    def __init__(
-        self,
-        state: FlightState,
-        mission_checks: MissionChecks,
-        failsafe_actions: FailsafeActions,
-        transitions: Transitions,
-        radio: Radio,
-        stream: SetpointStream,
-    ) -> None:
-        self._state = state
-        self._mission_checks = mission_checks
-        self._failsafe_actions = failsafe_actions
-        self._transitions = transitions
-        self._radio = radio
-        self._stream = stream
+    _state: FlightState
+    _mission_checks: MissionChecks
+    _failsafe_actions: FailsafeActions
+    _transitions: Transitions
+    _radio: Radio
+    _stream: SetpointStream
 
     def set_mode(self, base_mode: int, custom_mode: int) -> Result:
         state = self._state

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import partial
 from typing import assert_never
 
@@ -21,6 +22,7 @@ from vehicle_sim.autopilot.tasks.orbit import Orbit, ardupilot_circle, px4_defau
 from vehicle_sim.autopilot.tasks.tasks import Brake, Hold, Land, Level, Return, TakeOff
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class ModeTasks:
     """Makes tasks.
 
@@ -28,21 +30,12 @@ class ModeTasks:
     the mode itself.
     """
 
-    mission: Task
-
-    def __init__(
-        self,
-        state: FlightState,
-        bounds: Bounds,
-        radio: Radio,
-        stream: SetpointStream,
-        leader: Leader,
-    ) -> None:
-        self._state = state
-        self._bounds = bounds
-        self._radio = radio
-        self._stream = stream
-        self._leader = leader
+    _state: FlightState
+    _bounds: Bounds
+    _radio: Radio
+    _stream: SetpointStream
+    _leader: Leader
+    mission: Task = field(init=False)
 
     def task_of(self, mode: Mode) -> Task:
         state = self._state

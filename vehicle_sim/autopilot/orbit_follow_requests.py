@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 
 from vehicle_sim.autopilot.flight_state import FlightState
@@ -16,16 +17,14 @@ _DEFAULT_ORBIT_M = 1.0
 _DEFAULT_ORBIT_M_S = 1.0
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class OrbitFollowRequests:
     """What is flown round, and what is flown after."""
 
-    def __init__(
-        self, state: FlightState, transitions: Transitions, radio: Radio, leader: Leader
-    ) -> None:
-        self._state = state
-        self._transitions = transitions
-        self._radio = radio
-        self._leader = leader
+    _state: FlightState
+    _transitions: Transitions
+    _radio: Radio
+    _leader: Leader
 
     def orbit(self, asked: OrbitRequest) -> Result:
         state = self._state

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from vehicle_sim.autopilot.control.demands import Situation, Task
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.flight_state import FlightState
@@ -26,22 +28,15 @@ _POINTED = (
 """In these, unless they are flown by hand, a region of interest turns the nose."""
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class TaskFlight:
     """Writes the task's demands; lands, disarms and goes on when they have been met."""
 
-    def __init__(
-        self,
-        state: FlightState,
-        mission: Mission,
-        mission_checks: MissionChecks,
-        transitions: Transitions,
-        auto_disarm: AutoDisarm,
-    ) -> None:
-        self._state = state
-        self._mission = mission
-        self._mission_checks = mission_checks
-        self._transitions = transitions
-        self._auto_disarm = auto_disarm
+    _state: FlightState
+    _mission: Mission
+    _mission_checks: MissionChecks
+    _transitions: Transitions
+    _auto_disarm: AutoDisarm
 
     def fly(self, s: Situation, regular: bool) -> None:
         state = self._state

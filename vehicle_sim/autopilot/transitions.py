@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from vehicle_sim.autopilot.acting_failsafe import ActingFailsafe
 from vehicle_sim.autopilot.control.demands import Task
 from vehicle_sim.autopilot.failsafes.failsafe import Cause
@@ -13,24 +15,16 @@ from vehicle_sim.autopilot.mode_tasks import ModeTasks
 from vehicle_sim.autopilot.modes import KINDS, MODES, Behaviour, Mode
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Transitions:
     """Carries out what was decided elsewhere; refuses nothing."""
 
-    def __init__(
-        self,
-        state: FlightState,
-        mode_tasks: ModeTasks,
-        acting: ActingFailsafe,
-        geofence: Geofence,
-        failsafe_checks: FailsafeChecks,
-        failure_detector: FailureDetector,
-    ) -> None:
-        self._state = state
-        self._mode_tasks = mode_tasks
-        self._acting = acting
-        self._geofence = geofence
-        self._failsafe_checks = failsafe_checks
-        self._failure_detector = failure_detector
+    _state: FlightState
+    _mode_tasks: ModeTasks
+    _acting: ActingFailsafe
+    _geofence: Geofence
+    _failsafe_checks: FailsafeChecks
+    _failure_detector: FailureDetector
 
     def restart(self) -> None:
         """The task of the mode after power-up."""

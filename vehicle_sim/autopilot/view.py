@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from math import pi
 
 from vehicle_sim.autopilot.acting_failsafe import ActingFailsafe
@@ -30,22 +31,16 @@ _FALLING_M_S = 1.0
 _QUADROTOR = 2  # MAV_TYPE
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class View:
     """Reads, and changes nothing."""
 
-    def __init__(
-        self,
-        state: FlightState,
-        health_checks: HealthChecks,
-        acting: ActingFailsafe,
-        mission: Mission,
-    ) -> None:
-        self._state = state
-        self._health_checks = health_checks
-        self._acting = acting
-        self._mission = mission
-        self._shown: Estimate | None = None
-        self._shown_home: Vec3 | None = None
+    _state: FlightState
+    _health_checks: HealthChecks
+    _acting: ActingFailsafe
+    _mission: Mission
+    _shown: Estimate | None = field(default=None, init=False)
+    _shown_home: Vec3 | None = field(default=None, init=False)
 
     def restart(self) -> None:
         """As after power-up."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from vehicle_sim.autopilot.control.demands import Demand, FlyLevel, Situation, Turner
 from vehicle_sim.autopilot.interface import Landed, Target
@@ -12,6 +12,7 @@ from vehicle_sim.autopilot.tasks.descent_rate import descent_m_s
 _BELOW_M = 1000.0
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Descend:
     """Level, the wind may carry it (PX4's Descend, ArduCopter's LAND without a position).
 
@@ -21,10 +22,7 @@ class Descend:
     landed_word = Landed.LANDING
     done = False
 
-    __slots__ = ("_parameters",)
-
-    def __init__(self, parameters: Parameters) -> None:
-        self._parameters = parameters
+    _parameters: Parameters
 
     @property
     def target(self) -> Target:

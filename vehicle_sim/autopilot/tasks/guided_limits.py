@@ -7,7 +7,7 @@ not taken in AUTO, so it holds its place until a limit strikes.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import hypot
 
 from vehicle_sim.autopilot.control.demands import Demand, FlyTo, Situation, Turner
@@ -25,17 +25,15 @@ class GuidedLimits:
     most_away_m: float = 0.0
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class AwaitGuidance:
     """Over when a limit strikes; without one, never.  `limits` may come after its begin."""
 
     landed_word = Landed.IN_AIR
 
-    __slots__ = ("_limits", "_place_ned", "_since_ns")
-
-    def __init__(self, place_ned: Vec3, limits: Callable[[], GuidedLimits]) -> None:
-        self._place_ned = place_ned
-        self._limits = limits
-        self._since_ns: int | None = None
+    _place_ned: Vec3
+    _limits: Callable[[], GuidedLimits]
+    _since_ns: int | None = field(default=None, init=False)
 
     @property
     def target(self) -> Target:

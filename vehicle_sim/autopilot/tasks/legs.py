@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from math import inf, sqrt
 from typing import Protocol
 
@@ -32,13 +32,11 @@ class Leg(Protocol):
     def update(self, s: Situation, turner: Turner) -> Demand: ...
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Whole:
     """A task that is an item by itself."""
 
-    __slots__ = ("_task",)
-
-    def __init__(self, task: Task) -> None:
-        self._task = task
+    _task: Task
 
     @property
     def landed_word(self) -> Landed:
@@ -55,18 +53,16 @@ class Whole:
         return self._task.update(s, turner)
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Go:
     """To a place, and there for `stay_s` (infinite = for ever) once within `accept_m`."""
 
     landed_word = Landed.IN_AIR
 
-    __slots__ = ("_accept_m", "_place_ned", "_stay_s", "_until_ns")
-
-    def __init__(self, place_ned: Vec3, accept_m: float, stay_s: float) -> None:
-        self._place_ned = place_ned
-        self._accept_m = accept_m
-        self._stay_s = stay_s
-        self._until_ns: int | None = None
+    _place_ned: Vec3
+    _accept_m: float
+    _stay_s: float
+    _until_ns: int | None = field(default=None, init=False)
 
     @property
     def target(self) -> Target:
@@ -127,15 +123,13 @@ class GoToHeight:
         return FlyTo(self._place_ned if self._there else self._over_ned, s.limits)
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class GoAndLand:
     """At the present height over the place, then down; the land detector ends it."""
 
-    __slots__ = ("_land", "_over_ned", "_parameters")
-
-    def __init__(self, parameters: Parameters, over_ned: Vec3) -> None:
-        self._parameters = parameters
-        self._over_ned = over_ned
-        self._land: Land | None = None
+    _parameters: Parameters
+    _over_ned: Vec3
+    _land: Land | None = field(default=None, init=False)
 
     @property
     def landed_word(self) -> Landed:
@@ -156,15 +150,13 @@ class GoAndLand:
         return FlyTo(self._over_ned, s.limits)
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Rise:
     """A take-off; then to the item's own place, where the personality goes there (PX4)."""
 
-    __slots__ = ("_go", "_take_off", "_up")
-
-    def __init__(self, take_off: TakeOff, go: Go | None) -> None:
-        self._take_off = take_off
-        self._go = go
-        self._up = False
+    _take_off: TakeOff
+    _go: Go | None
+    _up: bool = field(default=False, init=False)
 
     @property
     def landed_word(self) -> Landed:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from math import atan2, copysign, cos, hypot, pi, remainder, sin, sqrt
 from typing import Protocol
@@ -103,6 +103,7 @@ def ardupilot_circle(parameters: Parameters) -> Way:
     return way
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Orbit:
     """To the nearest point of the circle, then round it for ever.
 
@@ -112,24 +113,13 @@ class Orbit:
     landed_word = Landed.IN_AIR
     done = False
 
-    __slots__ = (
-        "_approaching",
-        "_heading_rad",
-        "_parameters",
-        "_radio",
-        "_round",
-        "_time_ns",
-        "_way",
-    )
-
-    def __init__(self, way: Way, parameters: Parameters, radio: Radio | None = None) -> None:
-        self._way = way
-        self._parameters = parameters
-        self._radio = radio
-        self._time_ns = 0
-        self._round: Round | None = None
-        self._heading_rad = 0.0
-        self._approaching = True
+    _way: Way
+    _parameters: Parameters
+    _radio: Radio | None = None
+    _time_ns: int = field(default=0, init=False)
+    _round: Round | None = field(default=None, init=False)
+    _heading_rad: float = field(default=0.0, init=False)
+    _approaching: bool = field(default=True, init=False)
 
     @property
     def target(self) -> Target:

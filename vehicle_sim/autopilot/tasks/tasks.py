@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from math import atan2, sqrt
 
@@ -43,6 +43,7 @@ def face(goal_ned: Vec3, s: Situation, turner: Turner) -> None:
         turner.turn_to(atan2(east, north))
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Hold:
     """Brake and stay; or fly to `goal_ned` and stay there.
 
@@ -52,22 +53,15 @@ class Hold:
 
     done = True
 
-    __slots__ = ("_speed_m_s", "_stops", "_yaw_rad", "goal_ned", "landed_word", "lifts")
+    goal_ned: Vec3 | None = None
+    _yaw_rad: float | None = None
+    _speed_m_s: float | None = None
+    lifts: bool = False
+    landed_word: Landed = Landed.IN_AIR
+    _stops: bool = field(init=False)
 
-    def __init__(
-        self,
-        goal_ned: Vec3 | None = None,
-        yaw_rad: float | None = None,
-        speed_m_s: float | None = None,
-        lifts: bool = False,
-        landed_word: Landed = Landed.IN_AIR,
-    ) -> None:
-        self.goal_ned = goal_ned
-        self._stops = goal_ned is None
-        self.landed_word = landed_word
-        self.lifts = lifts
-        self._yaw_rad = yaw_rad
-        self._speed_m_s = speed_m_s
+    def __post_init__(self) -> None:
+        self._stops = self.goal_ned is None
 
     @property
     def target(self) -> Target:
