@@ -7,7 +7,7 @@ import pytest
 from gcs.gate.condition import Condition
 from gcs.gate.states import State
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
-from vehicle_sim.simulation.fault_script import ended, fault_of
+from vehicle_sim.simulation.fault_script import fault_of
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
@@ -35,7 +35,7 @@ def test_on_the_ground_it_does_not_arm_until_the_fix_is_back(personality: Person
     assert flight.world.inject(lost, 1)
     flight.run(1.5)
     assert flight.done(flight.say("arm")) == "refused SEVERITY"
-    back = ended(lost)
+    back = lost.ended()
     assert back is not None
     assert flight.world.inject(back, 1)
     flight.until(lambda: not flight.conditions or flight.vehicle.armable, 30.0)

@@ -20,7 +20,7 @@ from gcs.gate.states import Control, State
 from tests.loopback.checked_flight import CheckedFlight
 from tests.loopback.flight import PERSONALITIES, Personality
 from vehicle_sim.plant.sensors import SensorGrade
-from vehicle_sim.simulation.fault_script import AnyFault, ended, fault_of
+from vehicle_sim.simulation.fault_script import AnyFault, fault_of
 
 both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 ORIGIN = 49  # GPS_GLOBAL_ORIGIN
@@ -52,7 +52,7 @@ def strike(flight: CheckedFlight, kind: str, **keys: object) -> AnyFault:
 
 
 def mend(flight: CheckedFlight, fault: AnyFault) -> None:
-    end = ended(fault)
+    end = fault.ended()
     assert end is not None
     assert flight.world.inject(end, 1)
 

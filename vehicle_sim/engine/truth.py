@@ -10,8 +10,8 @@ from typing import Final
 
 from vehicle_sim.engine.step import Blocks
 from vehicle_sim.numerics.vectors import Quat, Vec3
-from vehicle_sim.plant import faults
 from vehicle_sim.plant.body import Body
+from vehicle_sim.plant.faults import ModelFault
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +39,9 @@ def motion_of(blocks: Blocks) -> Motion:
     )
 
 
-def inject(fault: faults.ModelFault, blocks: Blocks) -> None:
+def inject(fault: ModelFault, blocks: Blocks) -> None:
     """Make the fault true."""
-    faults.inject(fault, blocks.body, blocks.sensed)
+    fault.inject(blocks.body, blocks.sensed)
 
 
 def put_home(blocks: Blocks) -> None:

@@ -15,7 +15,7 @@ from dataclasses import asdict
 from typing import Final, Protocol
 
 from vehicle_sim.autopilot.interface import Truth
-from vehicle_sim.simulation.fault_script import AnyFault, FaultFileError, ended, fault_of
+from vehicle_sim.simulation.fault_script import AnyFault, FaultFileError, fault_of
 
 LINE_MAX: Final = 65_536
 
@@ -69,7 +69,7 @@ def _carry_out(asked: dict[str, object], stage: Stage) -> dict[str, object]:
                 raise _WrongError("keys: must be an object")
             kind = str(asked.get("kind"))
             given = fault_of(kind, keys, "fault")
-            fault = ended(given) if do == "mend" else given
+            fault = given.ended() if do == "mend" else given
             if fault is None:
                 raise _WrongError(f"{kind}: does not last, and cannot be mended")
             if not stage.inject(fault, system):

@@ -14,7 +14,8 @@
 payload, centre_of_mass, weak_battery, thrust, inertia and motor change the vehicle alone: the
 autopilot goes on believing its airframe's data sheet.
 
-The kinds and their keys are the literal table `KINDS`.  Equal files and seeds give equal flights.
+The kinds and their keys are the literal table `KINDS`; what each does and how it is told is its
+class in `plant/faults.py`.  Equal files and seeds give equal flights.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from math import isfinite
 from typing import Final, Literal, TypeAlias
 
 from vehicle_sim.plant import faults as model
+from vehicle_sim.plant.faults import spelled
 
 Direction: TypeAlias = Literal["in", "out", "both"]
 
@@ -50,6 +52,27 @@ class LinkFault:
     duplicate: float = 0.0
     reorder: float = 0.0
     out: bool = False
+
+    def described(self) -> str:
+        which = "every link" if self.link is None else f"link {self.link}"
+        way = {"in": " towards the vehicle", "out": " from the vehicle", "both": ""}[self.direction]
+        if self.out:
+            return f"{which} loses everything{way}"
+        parts = [
+            f"{verb} {spelled(100.0 * rate)} %"
+            for verb, rate in (
+                ("loses", self.loss),
+                ("doubles", self.duplicate),
+                ("reorders", self.reorder),
+            )
+            if rate
+        ]
+        if self.delay_s or self.jitter_s:
+            parts.append(f"delays by {spelled(self.delay_s)} s, +-{spelled(self.jitter_s)} s")
+        return f"{which} {', '.join(parts) if parts else 'is sound'}{way}"
+
+    def ended(self) -> LinkFault:
+        return LinkFault(self.link, self.direction)
 
 
 AnyFault: TypeAlias = model.Fault | LinkFault
@@ -216,19 +239,6 @@ def fault_of(kind: str, keys: Mapping[str, object], where: str) -> AnyFault:
     return fault
 
 
-def ended(fault: AnyFault) -> AnyFault | None:
-    """What puts it right again; None where nothing can."""
-    match fault:
-        case LinkFault():
-            return LinkFault(fault.link, fault.direction)
-        case model.ClockJump(by_ns):
-            return model.ClockJump(-by_ns)
-        case model.Reboot():
-            return None
-        case _:
-            return model.sound(fault)
-
-
 def _timed(entry: _Entry) -> list[Timed]:
     at_ns = round(entry.required("at_s", 0.0, 1e6) * 1e9)
     lasts_s = entry.optional("for_s", 0.0, 1e6)
@@ -238,7 +248,7 @@ def _timed(entry: _Entry) -> list[Timed]:
     whose = None if system is None else int(system)
     happenings = [Timed(at_ns, whose, fault)]
     if lasts_s is not None:
-        end = ended(fault)
+        end = fault.ended()
         if end is None:
             raise entry.wrong("for_s", "a reboot does not last")
         happenings.append(Timed(at_ns + round(lasts_s * 1e9), whose, end))

@@ -16,7 +16,6 @@ from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.services.streams import NEVER
 from vehicle_sim.simulation.channels import DATAGRAM_BYTES, Connection
 from vehicle_sim.simulation.fault_script import AnyFault, LinkFault, Schedule, Timed
-from vehicle_sim.simulation.fault_words import described
 from vehicle_sim.simulation.impairment import NEVER_NS, Direction, Impairment
 from vehicle_sim.simulation.switchboard import Switchboard
 from vehicle_sim.simulation.traffic import (
@@ -211,7 +210,7 @@ class World:
             who = "" if timed.system is None else f"vehicle {timed.system}: "
             done = self.inject(timed.fault, timed.system)
             level, but = ("info", "") if done else ("warning", ", but there is no such thing")
-            out.append(Log(level, "faults", f"{who}{described(timed.fault)}{but}"))
+            out.append(Log(level, "faults", f"{who}{timed.fault.described()}{but}"))
         self._fault_ns = self._schedule.due_ns(NEVER_NS)
 
     def _plan(self, number: int) -> None:

@@ -24,8 +24,6 @@ from vehicle_sim.plant.faults import (
     ThrustScale,
     WeakBattery,
     WindChange,
-    inject,
-    sound,
 )
 from vehicle_sim.plant.sensed import Sensed
 from vehicle_sim.simulation.fault_script import (
@@ -33,7 +31,6 @@ from vehicle_sim.simulation.fault_script import (
     LinkFault,
     Schedule,
     Timed,
-    ended,
     parse,
 )
 
@@ -156,17 +153,14 @@ FAULTS: tuple[ModelFault, ...] = (
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_changes_the_blocks_and_its_end_puts_them_right(fault: ModelFault) -> None:
     body, sensed = Body(), Sensed()
-    inject(fault, body, sensed)
+    fault.inject(body, sensed)
     assert (body, sensed) != (Body(), Sensed())
-    end = sound(fault)
-    assert end == ended(fault)
-    assert not isinstance(end, RcLost)
-    inject(end, body, sensed)
+    fault.ended().inject(body, sensed)
     assert (body, sensed) == (Body(), Sensed())
 
 
 def test_each_motor_has_its_own_health() -> None:
     body = Body()
     for motor in (1, 2, 3, 4):
-        inject(MotorFault(motor, motor / 10), body, Sensed())
+        MotorFault(motor, motor / 10).inject(body, Sensed())
     assert (body.health_1, body.health_2, body.health_3, body.health_4) == (0.1, 0.2, 0.3, 0.4)

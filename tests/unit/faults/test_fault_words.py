@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from vehicle_sim.simulation.fault_script import KINDS, ended, fault_of
-from vehicle_sim.simulation.fault_words import described
+from vehicle_sim.simulation.fault_script import KINDS, fault_of
 
 KEYS: dict[str, Mapping[str, object]] = {
     "motor": {"motor": 1},
@@ -21,9 +20,9 @@ KEYS: dict[str, Mapping[str, object]] = {
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_and_its_end_is_a_sentence(kind: str) -> None:
     fault = fault_of(kind, KEYS.get(kind, {}), "test")
-    for each in (fault, ended(fault)):
+    for each in (fault, fault.ended()):
         if each is not None:
-            words = described(each)
+            words = each.described()
             assert "(" not in words.split(" (")[0]
             assert "=" not in words
             assert "-0 " not in words + " "
@@ -53,4 +52,4 @@ def test_every_kind_and_its_end_is_a_sentence(kind: str) -> None:
 def test_a_sentence_has_the_numbers_and_their_units(
     kind: str, keys: Mapping[str, object], sentence: str
 ) -> None:
-    assert described(fault_of(kind, keys, "test")) == sentence
+    assert fault_of(kind, keys, "test").described() == sentence

@@ -11,7 +11,6 @@ from vehicle_sim.engine.scalar_engine import ScalarEngine
 from vehicle_sim.engine.step import DT_S, VehicleSpec
 from vehicle_sim.engine.truth import inject
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
-from vehicle_sim.plant import faults
 from vehicle_sim.plant.airframe import load
 from vehicle_sim.plant.battery import drain
 from vehicle_sim.plant.body import Body
@@ -31,7 +30,7 @@ EVERY = pytest.mark.parametrize("plant", PLANTS.values(), ids=PLANTS)
 
 
 def faulty(body: Body, fault: ModelFault) -> Body:
-    faults.inject(fault, body, Sensed())
+    fault.inject(body, Sensed())
     return body
 
 
