@@ -144,11 +144,11 @@ class Json(Plain):
     """The control line's other half: every line is one JSON object."""
 
     def ready(self, launch: Launch) -> None:
-        told = [
+        vehicles = [
             {"system": contact.system, "urls": [str(url.other_end) for url in contact.urls]}
             for contact in launch.contacts
         ]
-        _print(_json({"ready": told}))
+        _print(_json({"ready": vehicles}))
 
     def log(self, line: Log) -> None:
         if LEVELS[line.level] >= self._threshold:

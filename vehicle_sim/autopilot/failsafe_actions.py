@@ -23,7 +23,7 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
     Failsafe,
     activated,
 )
-from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Strike
+from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, FailsafeEvent
 from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.health_checks import HealthChecks
@@ -79,18 +79,18 @@ class FailsafeActions:
         """Ten times a second while armed."""
         state = self._state
         crossing = self._bounds.crossing(s)
-        strikes: list[Strike] = []
-        if not self._health_checks.quiet(s, crossing):
-            strikes += self._failsafe_checks.check(self._health_checks.see(s, crossing))
-        if not self._health_checks.calm:
+        events: list[FailsafeEvent] = []
+        if not self._health_checks.failsafes_nominal(s, crossing):
+            events += self._failsafe_checks.check(self._health_checks.see(s, crossing))
+        if not self._health_checks.flight_nominal:
             by_rates = state.blocks.flight.attitude == BY_RATES
             posture = self._health_checks.posture()
-            strikes += self._failure_detector.check(posture, s.flying, by_rates, s.time_ns)
-        for strike in sorted(strikes, key=_order):
-            if isinstance(strike, Cleared):
-                self._clear(strike, s)
+            events += self._failure_detector.check(posture, s.flying, by_rates, s.time_ns)
+        for event in sorted(events, key=_order):
+            if isinstance(event, Cleared):
+                self._clear(event, s)
             elif state.armed:
-                self._strike(strike, s)
+                self._trigger(event, s)
         due_ns, acting = self._acting.due_ns, self._acting.failsafe
         if due_ns is not None and s.time_ns >= due_ns and acting is not None:
             self._acting.due_ns = None
@@ -99,10 +99,10 @@ class FailsafeActions:
 
     def watch_disarmed(self, s: Situation) -> None:
         """Ten times a second while disarmed: what is told then, and stands in the way of arming."""
-        for struck in self._failsafe_checks.check_disarmed(
+        for failsafe in self._failsafe_checks.check_disarmed(
             s.wall_ns, self._battery.power, self._battery.charge_seen
         ):
-            self._state.say(struck.severity, struck.text)
+            self._state.say(failsafe.severity, failsafe.text)
 
     def watch_offboard(self, s: Situation) -> None:
         state = self._state
@@ -112,39 +112,39 @@ class FailsafeActions:
         if self._stream.age_ns(s.wall_ns) >= loss_ns:
             action = OFFBOARD_LOSS[int(state.parameters.get("COM_OBL_RC_ACT"))]
             text = activated(action, "no offboard signal")
-            self._strike(Failsafe(Cause.SETPOINTS, action, text, 2), s)
+            self._trigger(Failsafe(Cause.SETPOINTS, action, text, 2), s)
 
     # -------------------------------------------------------------------- what it does
 
-    def _strike(self, struck: Failsafe, s: Situation) -> None:
+    def _trigger(self, failsafe: Failsafe, s: Situation) -> None:
         """Say it, and act if it is worse than what is being done already."""
         state = self._state
         acting = self._acting.failsafe
-        worse = acting is None or RANK[struck.action] > RANK[acting.action]
-        if struck.action is Action.WARN or not worse:
-            if struck.action is Action.WARN or state.rules.tells_lesser_failsafes:
-                state.say(struck.severity, struck.text)
+        worse = acting is None or RANK[failsafe.action] > RANK[acting.action]
+        if failsafe.action is Action.WARN or not worse:
+            if failsafe.action is Action.WARN or state.rules.tells_lesser_failsafes:
+                state.say(failsafe.severity, failsafe.text)
             return
-        wait_s = self._grace_s(struck, s)
-        self._acting.failsafe = struck
+        wait_s = self._grace_s(failsafe, s)
+        self._acting.failsafe = failsafe
         self._acting.came_from = self._acting.came_from or state.mode
         self._acting.overruled = acting
         if wait_s > 0.0:
             self._acting.due_ns = s.time_ns + int(wait_s * 1e9)
             self._acting.grace_left_s, self._acting.grace_ns = 0.0, self._acting.due_ns
-            state.say(struck.severity, f"{struck.text} in {ceil(wait_s):.0f} seconds")
+            state.say(failsafe.severity, f"{failsafe.text} in {ceil(wait_s):.0f} seconds")
             climbing = state.task if isinstance(state.task, TakeOff) and not s.flying else None
             self._change(Action.HOLD)
             if climbing is not None:
                 state.task = Hold(climbing.target.pos_ned, lifts=True)
         else:
             self._acting.due_ns = None
-            state.say(struck.severity, struck.text)
-            self._carry_out(struck.action)
+            state.say(failsafe.severity, failsafe.text)
+            self._carry_out(failsafe.action)
 
-    def _grace_s(self, struck: Failsafe, s: Situation) -> float:
+    def _grace_s(self, failsafe: Failsafe, s: Situation) -> float:
         """How long PX4 holds first: not for what is urgent, nor where it could not hold."""
-        at_once = struck.action in (Action.DISARM, Action.TERMINATE) or not struck.delayed
+        at_once = failsafe.action in (Action.DISARM, Action.TERMINATE) or not failsafe.delayed
         if (
             at_once
             or self._acting.failsafe is not None
@@ -197,8 +197,8 @@ class FailsafeActions:
             self._transitions.enter(came_from)
 
 
-def _order(strike: Strike) -> int:
+def _order(event: FailsafeEvent) -> int:
     """What has gone first, then what is only told, then the worst."""
-    if isinstance(strike, Cleared):
+    if isinstance(event, Cleared):
         return -2
-    return -1 if strike.action is Action.WARN else len(RANK) - RANK[strike.action]
+    return -1 if event.action is Action.WARN else len(RANK) - RANK[event.action]

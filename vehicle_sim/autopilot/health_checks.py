@@ -138,11 +138,11 @@ class HealthChecks:
         """AP_Arming::update, once a second: what is against arming is told when it comes, and every
         30 s."""
         state = self._state
-        last_ns, quiet_ns = self._checked_ns, state.time_ns - self._displayed_ns
+        last_ns, since_shown_ns = self._checked_ns, state.time_ns - self._displayed_ns
         if not state.rules.tells_unready or state.time_ns - last_ns < _CHECKED_EVERY_NS:
             return
         self._checked_ns = state.time_ns
-        if quiet_ns > (_AGAIN_NS if self._newly_unready else _DISPLAYED_EVERY_NS):
+        if since_shown_ns > (_AGAIN_NS if self._newly_unready else _DISPLAYED_EVERY_NS):
             self._newly_unready = False
             self._displayed_ns = state.time_ns
             self.say_against_arming(False)
@@ -152,10 +152,10 @@ class HealthChecks:
 
     # -------------------------------------------------------------------------- in flight
 
-    def quiet(self, s: Situation, crossing: Crossing) -> bool:
+    def failsafes_nominal(self, s: Situation, crossing: Crossing) -> bool:
         """Whether no failsafe's trigger can have come or gone."""
         lost = self._radio.lost(s.wall_ns)
-        return crossing is NOTHING and self._failsafe_checks.quiet(
+        return crossing is NOTHING and self._failsafe_checks.nominal(
             s.wall_ns, self._state.sensed, self._state.est, lost
         )
 
@@ -187,10 +187,10 @@ class HealthChecks:
         return state.mode.needs_position or state.mode.behaviour is Behaviour.LAND
 
     @property
-    def calm(self) -> bool:
+    def flight_nominal(self) -> bool:
         state = self._state
         est, f, sensed = state.est, state.blocks.flight, state.sensed
-        return self._failure_detector.calm(
+        return self._failure_detector.nominal(
             1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy),
             1.0 - 2.0 * (f.sp_x * f.sp_x + f.sp_y * f.sp_y),
             max(f.u1, f.u2, f.u3, f.u4),

@@ -49,13 +49,13 @@ class ManualInput:
 
     def joystick(self, forward: int, right: int, up: int, clockwise: int, wall_ns: int) -> None:
         self._radio.joystick(forward, right, up, clockwise, wall_ns)
-        self._heed(wall_ns)
+        self._apply_sticks(wall_ns)
 
     def override_channels(self, channels_us: tuple[int, ...], wall_ns: int) -> None:
         self._radio.override(channels_us, wall_ns)
-        self._heed(wall_ns)
+        self._apply_sticks(wall_ns)
 
-    def _heed(self, wall_ns: int) -> None:
+    def _apply_sticks(self, wall_ns: int) -> None:
         state = self._state
         if state.rules.mode_switch:
             number = self._gestures.mode(self._radio, wall_ns)

@@ -109,8 +109,8 @@ class MissionChecks:
         state = self._state
         mission = self._mission
         grounded = state.armed and not state.control.flying
-        told = state.rules.tells_mission_take_off
-        if not told or state.task is not mission or not grounded:
+        tells = state.rules.tells_mission_take_off
+        if not tells or state.task is not mission or not grounded:
             return
         beyond = mission.jump_beyond
         if beyond is not None:

@@ -33,7 +33,7 @@ SLACK_S: Final = 0.5 * SLOW_S
 
 # Standing still is turning no faster than this, under a specific force of about gravity.
 _STILL_RAD_S: Final = 0.1
-_CALM_BAND: Final = 0.2  # of gravity squared
+_AT_REST_BAND: Final = 0.2  # of gravity squared
 _BIAS_MAX_RAD_S: Final = 0.1
 
 # Part of an angle that is corrected in a sample, and part of that which the bias learns.
@@ -143,10 +143,10 @@ def _align(est: Estimated, sensed: Sensed, aligning: bool, strength: float) -> N
     """
     g_x, g_y, g_z = sensed.gyro_x, sensed.gyro_y, sensed.gyro_z
     still = _STILL_RAD_S
-    calm = g_x < still and g_x > -still and g_y < still and g_y > -still
-    calm = calm and g_z < still and g_z > -still
-    calm = calm and strength < _CALM_BAND and strength > -_CALM_BAND
-    age_s = est.age_s + SLOW_S if calm else 0.0
+    at_rest = g_x < still and g_x > -still and g_y < still and g_y > -still
+    at_rest = at_rest and g_z < still and g_z > -still
+    at_rest = at_rest and strength < _AT_REST_BAND and strength > -_AT_REST_BAND
+    age_s = est.age_s + SLOW_S if at_rest else 0.0
     est.age_s = age_s if aligning else est.age_s
     # The shortest turn that puts the specific force up ...
     x, y, z = sensed.accel_x, sensed.accel_y, sensed.accel_z
@@ -173,13 +173,13 @@ def _align(est: Estimated, sensed: Sensed, aligning: bool, strength: float) -> N
     c = sqrt(0.5 * (1.0 + north))
     s = sqrt(0.5 * (1.0 - north))
     s = -s if e > 0.0 else s
-    take = aligning and calm and age_s < SLOW_S + SLACK_S
+    take = aligning and at_rest and age_s < SLOW_S + SLACK_S
     est.qw = w1 * c if take else est.qw
     est.qx = x1 * c - y1 * s if take else est.qx
     est.qy = y1 * c + x1 * s if take else est.qy
     est.qz = w1 * s if take else est.qz
 
-    learn = aligning and calm
+    learn = aligning and at_rest
     mean = SLOW_S / (age_s if learn else 1.0)
     est.gyro_bias_x = est.gyro_bias_x + (g_x - est.gyro_bias_x) * mean if learn else est.gyro_bias_x
     est.gyro_bias_y = est.gyro_bias_y + (g_y - est.gyro_bias_y) * mean if learn else est.gyro_bias_y

@@ -61,12 +61,12 @@ class ArdupilotFormat:
         time_us = now.time_us
         major, minor, patch = (head.flight_sw_version >> shift & 0xFF for shift in (24, 16, 8))
         version = f"ArduCopter V{major}.{minor}.{patch}"
-        told = (major, minor, patch, QUALITY_OFFICIAL, 0, version.encode("ascii"), 0, COPTER)
+        release = (major, minor, patch, QUALITY_OFFICIAL, 0, version.encode("ascii"), 0, COPTER)
         return b"".join(
             (
                 definitions(time_us, RECORDS),
                 *(self.parameter(time_us, parameter) for parameter in head.parameters),
-                VER.data(time_us, SITL_BOARD, 0, *told, 0, 0, 0),
+                VER.data(time_us, SITL_BOARD, 0, *release, 0, 0, 0),
                 self.text(time_us, 6, version),
                 self.text(time_us, 6, "Frame: QUAD/X"),
                 _mode(now),

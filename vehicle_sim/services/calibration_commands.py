@@ -37,9 +37,8 @@ def _motor_test(context: CommandContext, order: Order) -> Answer:
 def _compass_by_yaw(context: CommandContext, order: Order) -> Answer:
     """FIXED_MAG_CAL_YAW: the compass is as good as before."""
     result = context.vehicle.calibrate_compass_by_yaw()
-    told = context.profile.compass_by_yaw_texts
-    texts = (Send(None, status_text(context.profile, *each)) for each in told)
-    return Answer(result, tuple(texts))
+    texts = context.profile.compass_by_yaw_texts
+    return Answer(result, tuple(Send(None, status_text(context.profile, *each)) for each in texts))
 
 
 def _compass_calibration(context: CommandContext, order: Order) -> Answer:

@@ -81,8 +81,8 @@ class Commands:
             if isinstance(asked, m.CommandLong)
             else from_int(client, asked)
         )
-        told = known is not None and known.result is Result.UNSUPPORTED
-        answer = self._answer(order, told)
+        refused_before = known is not None and known.result is Result.UNSUPPORTED
+        answer = self._answer(order, refused_before)
         while len(self._memory) >= REMEMBERED_MAX:
             del self._memory[next(iter(self._memory))]
         owed = int(answer.result is Result.IN_PROGRESS)
@@ -112,18 +112,21 @@ class Commands:
             key: known for key, known in self._memory.items() if key[0].channel != channel
         }
 
-    def _answer(self, order: Order, told: bool) -> Answer:
-        """`told`: it was said before that the command is not supported; MAVSDK asks for ever."""
+    def _answer(self, order: Order, refused_before: bool) -> Answer:
+        """`refused_before`: it was UNSUPPORTED before; MAVSDK asks for ever."""
         known = order.command in Cmd.__members__.values()
         profile = self._context.profile
         entry = TABLE.get(Cmd(order.command)) if known else None
-        if order.command in profile.unheard:
+        if order.command in profile.ignored_commands:
             return Answer(Result.UNSUPPORTED, acked=False)
         absent = profile.absent.get(Cmd(order.command)) if known else None
         if absent is not None:
             return Answer(absent, (Note("debug", f"nothing carries out {order.command}"),))
         if entry is None or entry.only not in (None, profile.name):
-            note = Note("debug" if told else "warning", f"command {order.command} is not supported")
+            note = Note(
+                "debug" if refused_before else "warning",
+                f"command {order.command} is not supported",
+            )
             return Answer(Result.UNSUPPORTED, (note,))
         if entry.place and not order.global_frame:
             return self._wrong_frame(order)

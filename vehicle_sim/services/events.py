@@ -127,7 +127,7 @@ class EventServer:
     def _send(self, events: Iterable[PX4Event]) -> list[Effect]:
         effects: list[Effect] = []
         for event in events:
-            told = m.Event(
+            message = m.Event(
                 id=event.id,
                 event_time_boot_ms=boot_ms(self._vehicle),
                 sequence=self._next,
@@ -137,8 +137,8 @@ class EventServer:
                 arguments=event.arguments,
             )
             self._next = (self._next + 1) & 0xFFFF
-            self._kept.append(told)
-            effects.append(Send(None, told))
+            self._kept.append(message)
+            effects.append(Send(None, message))
         return effects
 
     def _checked(self, wall_ns: int) -> Checked:

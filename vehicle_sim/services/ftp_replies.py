@@ -30,7 +30,7 @@ REMEMBERED: Final = frozenset(
 """To read or write at an offset again does no harm."""
 
 
-class _Told(NamedTuple):
+class _Sent(NamedTuple):
     request: Request
     reply: Reply
     heard_ns: int
@@ -40,39 +40,39 @@ class Replies:
     """The last few of each of the last clients."""
 
     def __init__(self) -> None:
-        self._told: dict[Client, dict[int, _Told]] = {}  # by the request's sequence
+        self._sent: dict[Client, dict[int, _Sent]] = {}  # by the request's sequence
 
     def recall(self, client: Client, request: Request, now_ns: int) -> Reply | None:
         """What the same request was answered with a moment ago."""
-        told = self._told.get(client, {})
-        known = told.get(request.sequence)
+        sent = self._sent.get(client, {})
+        known = sent.get(request.sequence)
         if known is None or known.request != request or now_ns - known.heard_ns > RETRY_NS:
             return None
-        told[request.sequence] = known._replace(heard_ns=now_ns)
+        sent[request.sequence] = known._replace(heard_ns=now_ns)
         return known.reply
 
     def remember(self, client: Client, request: Request, reply: Reply, now_ns: int) -> None:
         if request.opcode not in REMEMBERED:
             return
-        told = self._told.pop(client, {})
-        told.pop(request.sequence, None)
-        told[request.sequence] = _Told(request, reply, now_ns)
-        self._told[client] = told
-        if len(told) > REPLIES_KEPT:
-            del told[next(iter(told))]
-        if len(self._told) > CLIENTS_KEPT:
-            del self._told[next(iter(self._told))]
+        sent = self._sent.pop(client, {})
+        sent.pop(request.sequence, None)
+        sent[request.sequence] = _Sent(request, reply, now_ns)
+        self._sent[client] = sent
+        if len(sent) > REPLIES_KEPT:
+            del sent[next(iter(sent))]
+        if len(self._sent) > CLIENTS_KEPT:
+            del self._sent[next(iter(self._sent))]
 
     def closed(self, client: Client, session: int | None) -> None:
         """A session is over, or all of them (None): its opening is not to be confirmed again."""
-        told = self._told.get(client, {})
-        for sequence, known in list(told.items()):
+        sent = self._sent.get(client, {})
+        for sequence, known in list(sent.items()):
             if known.request.opcode in OPENING and session in (None, known.reply.session):
-                del told[sequence]
+                del sent[sequence]
 
     def forget(self, channel: int) -> None:
-        self._told = {
-            client: told for client, told in self._told.items() if client.channel != channel
+        self._sent = {
+            client: sent for client, sent in self._sent.items() if client.channel != channel
         }
 
 

@@ -88,7 +88,7 @@ class Info:
         if control_status is not None:
             self._own[m.IDS[m.ControlStatus]] = control_status
         missing = frozenset[int]() if profile.camera else CAMERA_MESSAGES[profile.name]
-        missing |= {m.IDS[kind] for kind in profile.untold}
+        missing |= {m.IDS[kind] for kind in profile.unsent_messages}
         self.streamable: Final = (frozenset(BUILDERS) | frozenset(self._own)) - missing
 
     def build(self, number: int) -> m.Message | None:

@@ -55,10 +55,10 @@ def _interval(context: CommandContext, order: Order, number: int) -> Answer:
     interval_us = context.streams[order.client.channel].interval_us(number)
     if interval_us is None and context.profile.names_unknown_message:
         raise RefusedError(Result.FAILED, f"there is no message {number} to be had")
-    told = m.MessageInterval(
+    message = m.MessageInterval(
         interval_us=interval_us if interval_us is not None else 0, message_id=number & 0xFFFF
     )
-    return Answer(Result.ACCEPTED, (Send(order.client.channel, told),))
+    return Answer(Result.ACCEPTED, (Send(order.client.channel, message),))
 
 
 def _get_interval(context: CommandContext, order: Order) -> Answer:
@@ -84,8 +84,8 @@ def _set_interval(context: CommandContext, order: Order) -> Answer:
 
 def _too_fast(context: CommandContext, number: int) -> Answer:
     text = f"Requested rate for message ID {number} too fast. Increase SCHED_LOOP_RATE"
-    told = in_chunks(context.profile, StatusText(6, text), context.vehicle.time_ns)
-    return Answer(Result.DENIED, tuple(Send(None, each) for each in told))
+    texts = in_chunks(context.profile, StatusText(6, text), context.vehicle.time_ns)
+    return Answer(Result.DENIED, tuple(Send(None, each) for each in texts))
 
 
 def _sends(kind: type[m.Message]) -> Handler:

@@ -105,14 +105,14 @@ class MissionServer:
         if asked.mission_type not in PLAN_TYPES:
             return [ack(client, asked.mission_type, MissionResult.UNSUPPORTED)]
         kind = MissionType(asked.mission_type)
-        told = m.MissionCount(
+        count = m.MissionCount(
             count_=len(self._plans.plan(kind)),
             target_system=client.system,
             target_component=client.component,
             mission_type=kind,
             opaque_id=self._plans.opaque_id(kind),
         )
-        return [Send(client.channel, told)]
+        return [Send(client.channel, count)]
 
     def request(
         self, client: Client, asked: m.MissionRequest | m.MissionRequestInt

@@ -62,10 +62,10 @@ def rotated_back(q: Quat, v: Vec3) -> Vec3:
 
 def _covariance(first_m: Vec3, then: Vec3) -> tuple[float, ...]:
     """Variances of six numbers; PX4 tells no covariance between them: NaN."""
-    told = [math.nan] * COVARIANCE_VALUES
+    covariance = [math.nan] * COVARIANCE_VALUES
     for place, deviation in zip(DIAGONAL, (*first_m, *then), strict=True):
-        told[place] = deviation * deviation
-    return tuple(told)
+        covariance[place] = deviation * deviation
+    return tuple(covariance)
 
 
 def odometry(vehicle: Vehicle, profile: Profile) -> m.Odometry | None:
@@ -104,7 +104,7 @@ def outputs_us(vehicle: Vehicle) -> tuple[int, int, int, int]:
 
 def actuator_output_status(vehicle: Vehicle, profile: Profile) -> m.ActuatorOutputStatus | None:
     """PX4's alone: pulses [us], and the number of the outputs where the dialect has their bits."""
-    if m.ActuatorOutputStatus in profile.untold:
+    if m.ActuatorOutputStatus in profile.unsent_messages:
         return None
     pulses = [float(DISARMED_US)] * OUTPUTS
     if vehicle.armed:
@@ -116,7 +116,7 @@ def actuator_output_status(vehicle: Vehicle, profile: Profile) -> m.ActuatorOutp
 
 def esc_status(vehicle: Vehicle, profile: Profile) -> m.EscStatus | None:
     """The four motor controllers; PX4 sends it on request."""
-    if m.EscStatus in profile.untold:
+    if m.EscStatus in profile.unsent_messages:
         return None
     outputs, power = vehicle.motor_outputs, vehicle.power
     together = sum(outputs)
@@ -131,7 +131,7 @@ def esc_status(vehicle: Vehicle, profile: Profile) -> m.EscStatus | None:
 
 
 def esc_info(vehicle: Vehicle, profile: Profile) -> m.EscInfo | None:
-    if m.EscInfo in profile.untold:
+    if m.EscInfo in profile.unsent_messages:
         return None
     return m.EscInfo(
         usec(vehicle),

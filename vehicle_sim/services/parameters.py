@@ -185,8 +185,8 @@ class ParameterServer:
         return effects
 
     def _error(self, client: Client, name: bytes, index: int, error: int) -> Effect:
-        told = m.ParamError(index, client.system, client.component, name, error)
-        return Send(client.channel, told)
+        message = m.ParamError(index, client.system, client.component, name, error)
+        return Send(client.channel, message)
 
 
 def _name(field: bytes) -> str:

@@ -1,7 +1,8 @@
 """Commands for what is carried, and for outputs: mostly for equipment that is not there.
 
 As recorded of vehicles that carry nothing: ArduCopter fails what needs a gimbal or a gripper and
-accepts what only sets an output; PX4 sends no ack where nobody listens (`Profile.unheard`).
+accepts what only sets an output; PX4 sends no ack where nobody listens
+(`Profile.ignored_commands`).
 """
 
 from __future__ import annotations

@@ -83,7 +83,7 @@ _RATES: Final = {
     "SR0_EXTRA2": DataStream.EXTRA2,
     "SR0_EXTRA3": DataStream.EXTRA3,
 }
-_PX4_UNHEARD: Final = frozenset(
+_PX4_IGNORED: Final = frozenset(
     {
         Cmd.NAV_DELAY,
         Cmd.DO_DIGICAM_CONTROL,
@@ -100,10 +100,10 @@ _PX4_UNHEARD: Final = frozenset(
     }
 )
 _BANNER: Final = ("ArduCopter V4.6.0", "vehicle-sim", "Frame: QUAD/X")
-_PX4_UNTOLD: Final[frozenset[type[m.Message]]] = frozenset(
+_PX4_UNSENT: Final[frozenset[type[m.Message]]] = frozenset(
     {m.RcChannelsRaw, m.FenceStatus, m.Wind, m.RelayStatus}
 )
-_COPTER_UNTOLD: Final[frozenset[type[m.Message]]] = frozenset(
+_COPTER_UNSENT: Final[frozenset[type[m.Message]]] = frozenset(
     {m.ManualControl, m.ActuatorOutputStatus, m.EscStatus, m.EscInfo, m.Ping}
 )
 _PX4_GOES: Final = frozenset(name for name in MODES["px4"] if name.startswith("AUTO."))
@@ -150,13 +150,13 @@ class Profile:
     log_frame_ns: int = each(250_000, 612_000)  # between two LOG_DATA of 90 bytes
     logs_while_armed: bool = PX4_ONLY  # logs are listed and sent in flight too
     component_metadata: bool = PX4_ONLY  # and its files; without it @PARAM/param.pck
-    unheard: frozenset[Cmd] = each(_PX4_UNHEARD, frozenset())  # nobody on board answers them
+    ignored_commands: frozenset[Cmd] = each(_PX4_IGNORED, frozenset())  # without an answer
     banner: tuple[str, ...] = each((), _BANNER)  # DO_SEND_BANNER, and before all parameters
     unsigned_allowed: frozenset[int] = each(PX4_UNSIGNED, RADIOS)  # messages, under a key
     camera: bool = True  # there is one
     absent: dict[Cmd, Result] = each({}, {})  # answers to commands for equipment that is not there
     requests: Requests = each(PX4_REQUESTS, ARDUPILOT_REQUESTS)  # what REQUEST_MESSAGE is answered
-    untold: frozenset[type[m.Message]] = each(_PX4_UNTOLD, _COPTER_UNTOLD)  # never sent
+    unsent_messages: frozenset[type[m.Message]] = each(_PX4_UNSENT, _COPTER_UNSENT)
     vtol_state: int = each(0, 3)  # MAV_VTOL_STATE: UNDEFINED; a multicopter
     flies_to_places: frozenset[str] = each(_PX4_GOES, _COPTER_GOES)  # POSITION_TARGET_GLOBAL_INT
     flies_to_places_in_air: frozenset[str] = each(frozenset(), frozenset({"GUIDED"}))
@@ -235,7 +235,7 @@ _NO_CAMERA: Final[dict[Personality, dict[Cmd, Result]]] = {
     },
 }
 """As the recorded autopilots, which had no camera, answered."""
-_NO_CAMERA_UNHEARD: Final[dict[Personality, frozenset[Cmd]]] = {
+_NO_CAMERA_IGNORED: Final[dict[Personality, frozenset[Cmd]]] = {
     "px4": frozenset({Cmd.SET_CAMERA_MODE}),
     "ardupilot": frozenset(),
 }
@@ -253,7 +253,7 @@ def without_camera(profile: Profile) -> Profile:
         profile,
         camera=False,
         absent=_NO_CAMERA[profile.name],
-        unheard=profile.unheard | _NO_CAMERA_UNHEARD[profile.name],
+        ignored_commands=profile.ignored_commands | _NO_CAMERA_IGNORED[profile.name],
         requests=replace(
             requests,
             never=requests.never | {image} | CAMERA_MESSAGES[profile.name],

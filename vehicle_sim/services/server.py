@@ -99,8 +99,8 @@ class VehicleServer:
         self._parameters = ParameterServer(parameters, profile)
         metadata = metadata_of(profile.name) if profile.component_metadata else None
         # Where nobody is told how far they have come, there are no events.
-        told = m.IDS[m.CurrentEventSequence] in self._stream_sets.by_mode[LinkMode.NORMAL]
-        self._events = EventServer(vehicle, parameters, profile.events and told)
+        counted = m.IDS[m.CurrentEventSequence] in self._stream_sets.by_mode[LinkMode.NORMAL]
+        self._events = EventServer(vehicle, parameters, profile.events and counted)
         control = self._operator_control
         self._info = Info(
             vehicle,
@@ -441,8 +441,8 @@ class VehicleServer:
                     (now_ns + turn * REACHED_EVERY_NS, event.seq)
                     for turn in range(1, self._profile.reached_repeats)
                 ]
-                told = Send(None, m.MissionItemReached(event.seq))
-                return [told, Note("info", f"mission item {event.seq} reached")]
+                reached = Send(None, m.MissionItemReached(event.seq))
+                return [reached, Note("info", f"mission item {event.seq} reached")]
             case HomeChanged():
                 home = self._info.build(m.IDS[m.HomePosition])
                 return [Send(None, home)] if home is not None else []

@@ -63,7 +63,7 @@ def altitude(vehicle: Vehicle, profile: Profile) -> m.Altitude | None:
 
 def wind(vehicle: Vehicle, profile: Profile) -> m.Wind | None:
     """ArduPilot's; `direction` is where the wind comes from.  None is known yet: none is told."""
-    if m.Wind in profile.untold:
+    if m.Wind in profile.unsent_messages:
         return None
     north, east, down = vehicle.wind_ned or (0.0, 0.0, 0.0)
     return m.Wind(math.degrees(math.atan2(-east, -north)), math.hypot(north, east), down)
@@ -106,7 +106,7 @@ def meminfo(vehicle: Vehicle, profile: Profile) -> m.Meminfo:
 
 def relay_status(vehicle: Vehicle, profile: Profile) -> m.RelayStatus | None:
     """ArduPilot's."""
-    if m.RelayStatus in profile.untold:
+    if m.RelayStatus in profile.unsent_messages:
         return None
     present, on = vehicle.relays
     return m.RelayStatus(vehicle.clock_ns // 1_000_000 & 0xFFFFFFFF, on, present)

@@ -76,9 +76,9 @@ _SENSORS: Final[dict[Personality, _Sensors]] = {
 }
 
 
-def _told(fence: FenceState, told: _Sensors) -> tuple[Sensor, Sensor, Sensor]:
+def _with_fence(fence: FenceState, sensors: _Sensors) -> tuple[Sensor, Sensor, Sensor]:
     """Present, enabled and healthy while nothing is wrong but with the fence."""
-    present, enabled, healthy = told.present, told.enabled, told.healthy
+    present, enabled, healthy = sensors.present, sensors.enabled, sensors.healthy
     if fence.present:
         present, healthy = present | Sensor.GEOFENCE, healthy | Sensor.GEOFENCE
     if fence.enabled:
@@ -96,8 +96,8 @@ def _px4_starting(stage: BootStage) -> tuple[Sensor, Sensor, Sensor]:
 
 def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
     power, health = vehicle.power, vehicle.health
-    told = _SENSORS[profile.name]
-    present, enabled, healthy = _told(vehicle.fence_state, told)
+    sensors = _SENSORS[profile.name]
+    present, enabled, healthy = _with_fence(vehicle.fence_state, sensors)
     # Clients take the bit of the GPS for "the global position is good".
     if not (health.gps_ok and health.position_ok):
         healthy &= ~Sensor.GPS
@@ -113,7 +113,7 @@ def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
         healthy &= ~Sensor.ABSOLUTE_PRESSURE
     if not (vehicle.armable or vehicle.armed):
         healthy &= ~Sensor.PREARM_CHECK
-    if told.starting and not vehicle.boot_stage.position:
+    if sensors.starting and not vehicle.boot_stage.position:
         present, enabled, healthy = _px4_starting(vehicle.boot_stage)
     return m.SysStatus(
         onboard_control_sensors_present=present,

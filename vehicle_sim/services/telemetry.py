@@ -243,7 +243,7 @@ def rc_channels(vehicle: Vehicle, profile: Profile) -> m.RcChannels | None:
 
 def rc_channels_raw(vehicle: Vehicle, profile: Profile) -> m.RcChannelsRaw | None:
     """The first eight, from ArduPilot: only peers of MAVLink 1 are sent it (`channels.py`)."""
-    if m.RcChannelsRaw in profile.untold:
+    if m.RcChannelsRaw in profile.unsent_messages:
         return None
     return m.RcChannelsRaw._make((boot_ms(vehicle), *vehicle.channels_us[:8], 0, RSSI_UNKNOWN))
 
@@ -251,7 +251,7 @@ def rc_channels_raw(vehicle: Vehicle, profile: Profile) -> m.RcChannelsRaw | Non
 def manual_control(vehicle: Vehicle, profile: Profile) -> m.ManualControl | None:
     """PX4 tells the sticks that it flies by."""
     sticks = vehicle.sticks
-    if sticks is None or m.ManualControl in profile.untold:
+    if sticks is None or m.ManualControl in profile.unsent_messages:
         return None
     roll, pitch, yaw, throttle = (round(1000.0 * part) for part in sticks)
     return m.ManualControl(x=pitch, y=roll, z=throttle, r=yaw, buttons=0, target=0)
@@ -260,7 +260,7 @@ def manual_control(vehicle: Vehicle, profile: Profile) -> m.ManualControl | None
 def fence_status(vehicle: Vehicle, profile: Profile) -> m.FenceStatus | None:
     """ArduPilot's alone, and only while its fence is on."""
     fence = vehicle.fence_state
-    if m.FenceStatus in profile.untold or not fence.present:
+    if m.FenceStatus in profile.unsent_messages or not fence.present:
         return None
     return m.FenceStatus(
         breach_time=fence.breach_ns // 1_000_000 & 0xFFFFFFFF,

@@ -123,8 +123,8 @@ class Channel:
         if not self.counters.bad:
             return None
         counts = ((each.name, getattr(self.counters, each.name)) for each in fields(Counters))
-        told = ", ".join(f"{name} {count}" for name, count in counts if count)
-        return f"{self.counters.bad} bad frames ({told})"
+        listed = ", ".join(f"{name} {count}" for name, count in counts if count)
+        return f"{self.counters.bad} bad frames ({listed})"
 
     @property
     def connection(self) -> Connection:

@@ -42,10 +42,10 @@ def answer(line: bytes, stage: Stage) -> bytes:
     try:
         asked = _object(line)
         number = asked.get("id")
-        told = _carry_out(asked, stage)
+        answer = _carry_out(asked, stage)
     except (_WrongError, FaultFileError) as wrong:
-        told = {"error": str(wrong)}
-    return json.dumps({"id": number, **told}).encode() + b"\n"
+        answer = {"error": str(wrong)}
+    return json.dumps({"id": number, **answer}).encode() + b"\n"
 
 
 def _object(line: bytes) -> dict[str, object]:

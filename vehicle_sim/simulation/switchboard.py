@@ -185,16 +185,16 @@ class Switchboard:
         There is no answer in the protocol.  Under a key only a rightly signed frame gets here.
         As ArduPilot has it, not while armed: the other clients would lose a flying vehicle.
         """
-        told = [
+        addressed = [
             server
             for server in self._channels.servers(link)
             if asked.target_system in (0, server.system)
         ]
-        if not told or asked.target_component not in (0, COMPONENT):
+        if not addressed or asked.target_component not in (0, COMPONENT):
             return
         if any(server.vehicle.armed for server in self._servers):
             text = m.Statustext(SEVERITY_WARNING, b"ERROR: Won't setup signing when armed")
-            for server in told:
+            for server in addressed:
                 self.emit(server, [Send(client.channel, text)], now_ns, out)
             return
         self._signing.follow(asked)

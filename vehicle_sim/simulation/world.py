@@ -132,10 +132,10 @@ class World:
                 return False
             self.impair(fault.link, _DIRECTIONS[fault.direction], _impairment(fault))
             return True
-        struck = [server for server in self._servers if system in (None, server.system)]
-        for server in struck:
+        hit = [server for server in self._servers if system in (None, server.system)]
+        for server in hit:
             server.vehicle.inject(fault)
-        return bool(struck)
+        return bool(hit)
 
     def truth(self, system: int) -> Truth | None:
         """What really is; None = no such vehicle."""

@@ -68,8 +68,8 @@ class SimVehicle:
 
     def truth(self) -> Truth:
         """What really is, now."""
-        told = self._simulator.ask(do="truth", vehicle=self.system)["truth"]
-        return msgspec.convert(told, Truth)
+        truth = self._simulator.ask(do="truth", vehicle=self.system)["truth"]
+        return msgspec.convert(truth, Truth)
 
     def wait(self, holds: Callable[[Truth], bool], timeout_s: float = 60.0) -> Truth:
         """The first truth seen for which `holds` does; it is looked at 50 times a second.
@@ -171,25 +171,25 @@ class Simulator:
         assert self._process.stdout is not None
         for raw in self._process.stdout:
             line = raw.decode("utf-8", "replace").rstrip()
-            told = _object(line)
-            if told is None or "log" in told:
-                self.log.append(line if told is None else str(told["log"]))
+            answer = _object(line)
+            if answer is None or "log" in answer:
+                self.log.append(line if answer is None else str(answer["log"]))
             else:
-                self._answers.put(told)
+                self._answers.put(answer)
         self._answers.put({"ended": True})
 
     def _next(self, timeout_s: float) -> dict[str, object]:
         try:
-            told = self._answers.get(timeout=timeout_s)
+            answer = self._answers.get(timeout=timeout_s)
         except Empty:
             said = "\n".join(self.log[-LOG_LINES:])
             raise SimulatorError(
                 f"no answer from vehicle-sim for {timeout_s:g} s:\n{said}"
             ) from None
-        if "ended" in told:
-            self._answers.put(told)  # whoever asks next is told so, too
+        if "ended" in answer:
+            self._answers.put(answer)  # whoever asks next is told so, too
             raise self._ended()
-        return told
+        return answer
 
     def _ended(self) -> SimulatorError:
         with suppress(subprocess.TimeoutExpired):
@@ -201,7 +201,7 @@ class Simulator:
 def _object(line: str) -> dict[str, object] | None:
     """A line of the control protocol; None for anything else, such as a warning of Python's."""
     try:
-        told = json.loads(line)
+        answer = json.loads(line)
     except ValueError:
         return None
-    return told if isinstance(told, dict) else None
+    return answer if isinstance(answer, dict) else None

@@ -160,8 +160,8 @@ def _packing(layout: Layout) -> str:
         if field.length and not _is_bytes(field)
     )
     form = "<" + "".join(map(_form, layout.fields))
-    told = f'"{form}", {sum(map(_size, base))}'
-    return f"Packing({told}, {arrays})" if arrays else f"Packing({told})"
+    form_and_size = f'"{form}", {sum(map(_size, base))}'
+    return f"Packing({form_and_size}, {arrays})" if arrays else f"Packing({form_and_size})"
 
 
 def _form(field: MessageField) -> str:

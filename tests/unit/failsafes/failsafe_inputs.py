@@ -8,7 +8,12 @@ from typing import Final
 
 from vehicle_sim.autopilot.failsafes.copter_failsafes import CopterFailsafes
 from vehicle_sim.autopilot.failsafes.failsafe import Action, Cause, Failsafe
-from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
+from vehicle_sim.autopilot.failsafes.failsafe_checks import (
+    Cleared,
+    FailsafeChecks,
+    FailsafeEvent,
+    Seen,
+)
 from vehicle_sim.autopilot.failsafes.px4_failsafes import Px4Failsafes
 from vehicle_sim.autopilot.fence.geofence import NOTHING
 from vehicle_sim.autopilot.interface import Power
@@ -83,46 +88,42 @@ class Look:
     def station_lost(self) -> bool:
         return self.checks.station_lost
 
-    def sees(self, **changes: object) -> list[Strike]:
-        """What strikes and clears once these have changed; they stay."""
+    def sees(self, **changes: object) -> list[FailsafeEvent]:
+        """What is triggered and cleared once these have changed; they stay."""
         self.seen = replace(self.seen, **changes)  # type: ignore[arg-type]  # as the test says
         return self.checks.check(self.seen)
 
-    def after(self, time_ns: int, **changes: object) -> list[Strike]:
+    def after(self, time_ns: int, **changes: object) -> list[FailsafeEvent]:
         """The same so much later, on both clocks."""
         later = {"time_ns": self.seen.time_ns + time_ns, "wall_ns": self.seen.wall_ns + time_ns}
         return self.sees(**later, **changes)
 
 
-def acts(strikes: Iterable[Strike], cause: Cause) -> list[Action]:
+def acts(events: Iterable[FailsafeEvent], cause: Cause) -> list[Action]:
     """The actions for this cause, telling aside."""
     return [
-        strike.action
-        for strike in strikes
-        if isinstance(strike, Failsafe)
-        and strike.cause is cause
-        and strike.action is not Action.WARN
+        event.action
+        for event in events
+        if isinstance(event, Failsafe) and event.cause is cause and event.action is not Action.WARN
     ]
 
 
-def warns(strikes: Iterable[Strike], cause: Cause) -> bool:
+def warns(events: Iterable[FailsafeEvent], cause: Cause) -> bool:
     """Whether something is told of this cause without being done."""
     return any(
-        isinstance(strike, Failsafe) and strike.cause is cause and strike.action is Action.WARN
-        for strike in strikes
+        isinstance(event, Failsafe) and event.cause is cause and event.action is Action.WARN
+        for event in events
     )
 
 
-def clears(strikes: Iterable[Strike], cause: Cause) -> bool:
-    return any(isinstance(strike, Cleared) and strike.cause is cause for strike in strikes)
+def clears(events: Iterable[FailsafeEvent], cause: Cause) -> bool:
+    return any(isinstance(event, Cleared) and event.cause is cause for event in events)
 
 
-def delays(strikes: Iterable[Strike], cause: Cause) -> list[bool]:
+def delays(events: Iterable[FailsafeEvent], cause: Cause) -> list[bool]:
     """Of those that act: whether PX4 holds first."""
     return [
-        strike.delayed
-        for strike in strikes
-        if isinstance(strike, Failsafe)
-        and strike.cause is cause
-        and strike.action is not Action.WARN
+        event.delayed
+        for event in events
+        if isinstance(event, Failsafe) and event.cause is cause and event.action is not Action.WARN
     ]

@@ -18,7 +18,7 @@ def test_the_next_limit_lies_20_m_beyond_the_one_that_was_crossed() -> None:
 
     def struck(away_m: float) -> bool:
         at = (away_m, 0.0, -10.0)
-        return fence.check(at, at, HOME_NED, False, 0).struck is BreachKind.CIRCLE
+        return fence.check(at, at, HOME_NED, False, 0).breached is BreachKind.CIRCLE
 
     assert not struck(49.0)
     assert struck(51.0)

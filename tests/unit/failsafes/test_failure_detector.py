@@ -234,27 +234,27 @@ def test_the_quick_look_is_calm_below_the_least_lean_that_counts(
 ) -> None:
     of = detector(personality)
     inside, outside = cos(radians(least_deg - 0.1)), cos(radians(least_deg + 0.1))
-    assert of.calm(inside, inside, 0.89, 0.4)
-    assert not of.calm(outside, 1.0, 0.5, 0.4)
-    assert not of.calm(1.0, outside, 0.5, 0.4)
-    assert not of.calm(1.0, 1.0, 0.9, 0.4)
-    assert of.calm(1.0, 1.0, 0.5, 0.05)
-    assert not of.calm(1.0, 1.0, 0.5, 0.049)
+    assert of.nominal(inside, inside, 0.89, 0.4)
+    assert not of.nominal(outside, 1.0, 0.5, 0.4)
+    assert not of.nominal(1.0, outside, 0.5, 0.4)
+    assert not of.nominal(1.0, 1.0, 0.9, 0.4)
+    assert of.nominal(1.0, 1.0, 0.5, 0.05)
+    assert not of.nominal(1.0, 1.0, 0.5, 0.049)
 
 
 def test_the_quick_look_follows_fd_fail_r_and_fd_fail_p() -> None:
     of = detector("px4", FD_FAIL_R=40, FD_FAIL_P=20)
-    assert of.calm(cos(radians(19.0)), 1.0, 0.5, 0.4)
-    assert not of.calm(cos(radians(21.0)), 1.0, 0.5, 0.4)
+    assert of.nominal(cos(radians(19.0)), 1.0, 0.5, 0.4)
+    assert not of.nominal(cos(radians(21.0)), 1.0, 0.5, 0.4)
     off = detector("px4", FD_FAIL_R=0, FD_FAIL_P=0)
-    assert off.calm(cos(radians(89.0)), 1.0, 0.5, 0.4)
-    assert not off.calm(cos(radians(91.0)), 1.0, 0.5, 0.4)
+    assert off.nominal(cos(radians(89.0)), 1.0, 0.5, 0.4)
+    assert not off.nominal(cos(radians(91.0)), 1.0, 0.5, 0.4)
 
 
 def test_the_quick_look_is_not_calm_before_the_first_check_nor_while_something_lasts() -> None:
     of = FAILURE_DETECTORS["px4"](parameters_of("px4"))
-    assert not of.calm(1.0, 1.0, 0.5, 0.4)
+    assert not of.nominal(1.0, 1.0, 0.5, 0.4)
     struck(of, replace(LEVEL, roll_rad=1.5), 0)
-    assert not of.calm(1.0, 1.0, 0.5, 0.4)
+    assert not of.nominal(1.0, 1.0, 0.5, 0.4)
     struck(of, LEVEL, S)
-    assert of.calm(1.0, 1.0, 0.5, 0.4)
+    assert of.nominal(1.0, 1.0, 0.5, 0.4)

@@ -93,15 +93,15 @@ def test_the_quick_look_misses_no_trouble(
     personality: Personality, trouble: Trouble, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     quiet: list[bool] = []
-    look = HealthChecks.quiet
+    look = HealthChecks.failsafes_nominal
 
     def noted(self: HealthChecks, s: object, crossing: Crossing) -> bool:
         quiet.append(look(self, s, crossing))  # type: ignore[arg-type]  # as it was given
         return quiet[-1]
 
-    monkeypatch.setattr(HealthChecks, "quiet", noted)
+    monkeypatch.setattr(HealthChecks, "failsafes_nominal", noted)
     quick = flown(personality, trouble)
     assert any(quiet)
     assert not all(quiet)
-    monkeypatch.setattr(HealthChecks, "quiet", lambda self, s, crossing: False)
+    monkeypatch.setattr(HealthChecks, "failsafes_nominal", lambda self, s, crossing: False)
     assert flown(personality, trouble) == quick

@@ -138,7 +138,7 @@ def fence_kinds(up_m: float, north_m: float) -> Script:
         fence = Geofence(setting.parameters())
         fence.check((0.0, 0.0, -45.0), (0.0, 0.0, -45.0), HOME, False, 0)
         at = (north_m, 0.0, -up_m)
-        return fence.check(at, at, HOME, False, S).struck.value
+        return fence.check(at, at, HOME, False, S).breached.value
 
     return script
 

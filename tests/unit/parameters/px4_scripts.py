@@ -167,7 +167,7 @@ def fence_kinds(up_m: float, north_m: float, stop_m: float | None = None) -> Scr
         fence = Geofence(setting.parameters())
         stop = (stop_m if stop_m is not None else north_m, 0.0, -up_m)
         crossing = fence.check((north_m, 0.0, -up_m), stop, (0.0, 0.0, 0.0), False, S)
-        return crossing.struck.value
+        return crossing.breached.value
 
     return script
 

@@ -174,9 +174,9 @@ def _copter(parameters: Parameters, ready: Readiness) -> list[str]:
     if asked(_MISSION) and not ready.mission_ok:
         found.append("PreArm: Mode requires mission")
     if get("FENCE_ENABLE") != 0:
-        misfit = ready.geofence.misfit()
-        if misfit is not None:
-            found.append(f"PreArm: {misfit}")
+        wrong = ready.geofence.settings_error()
+        if wrong is not None:
+            found.append(f"PreArm: {wrong}")
         if ready.geofence.breached:
             found.append(f"PreArm: Vehicle breaching {names(ready.geofence.breached)}")
     return found

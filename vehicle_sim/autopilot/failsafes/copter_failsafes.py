@@ -22,7 +22,12 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
     by_voltage,
     highest,
 )
-from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
+from vehicle_sim.autopilot.failsafes.failsafe_checks import (
+    Cleared,
+    FailsafeChecks,
+    FailsafeEvent,
+    Seen,
+)
 from vehicle_sim.autopilot.fence.geofence import names
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Behaviour
@@ -58,7 +63,7 @@ class CopterFailsafes(FailsafeChecks):
         self._used_most_mah = get("BATT_CAPACITY") - highest(self._parameters, CAPACITY)
         self._ratio_most = get("FS_EKF_THRESH")
 
-    def _well(self, sensed: Sensed, est: Estimated) -> bool:
+    def _within_limits(self, sensed: Sensed, est: Estimated) -> bool:
         if self._low_since_ns is not None or sensed.battery_v < self._volt_least:
             return False
         if sensed.battery_used_mah > self._used_most_mah:
@@ -72,7 +77,7 @@ class CopterFailsafes(FailsafeChecks):
         most = self._ratio_most
         return (of.mag_ratio >= most) + (of.vel_ratio >= most) + (of.pos_ratio >= most)
 
-    def _begin(self, seen: Seen) -> Iterator[Strike]:
+    def _begin(self, seen: Seen) -> Iterator[FailsafeEvent]:
         """Its own checks before arming have let it pass; forced, it acts at once."""
         return iter(())
 
@@ -83,7 +88,7 @@ class CopterFailsafes(FailsafeChecks):
     def _battery_words(self, power: Power, remaining: float) -> Iterator[Failsafe]:
         return iter(())
 
-    def _battery(self, seen: Seen) -> Iterator[Strike]:
+    def _battery(self, seen: Seen) -> Iterator[FailsafeEvent]:
         get = self._parameters.get
         charge = by_capacity(self._parameters, seen.power)
         if by_voltage(self._parameters, seen.power) > self._charge:
@@ -106,13 +111,13 @@ class CopterFailsafes(FailsafeChecks):
         yield Failsafe(Cause.BATTERY, Action.WARN, text, 4)
         yield self._copter("Battery", Cause.BATTERY, action, seen)
 
-    def _station(self, seen: Seen) -> Iterator[Strike]:
+    def _station(self, seen: Seen) -> Iterator[FailsafeEvent]:
         name, actions = STATION_LOSS["ardupilot"]
         action = actions.get(int(self._parameters.get(name)))
         if action is not None and self._station_gone(seen.wall_ns):
             yield self._copter("GCS", Cause.STATION, action, seen)
 
-    def _sticks(self, seen: Seen) -> Iterator[Strike]:
+    def _sticks(self, seen: Seen) -> Iterator[FailsafeEvent]:
         name, actions = STICKS_LOSS["ardupilot"]
         action = actions.get(int(self._parameters.get(name)))
         was_lost, self.sticks_lost = self.sticks_lost, seen.sticks_lost
@@ -143,11 +148,11 @@ class CopterFailsafes(FailsafeChecks):
             return Failsafe(cause, Action.WARN, f"{who} Failsafe - Continuing Pilot Control", 4)
         return Failsafe(cause, action, f"{who} Failsafe", 4)
 
-    def _fence(self, seen: Seen) -> Iterator[Strike]:
+    def _fence(self, seen: Seen) -> Iterator[FailsafeEvent]:
         crossing = seen.crossing
         if crossing.cleared:
             yield Cleared(Cause.FENCE, "Fence breach cleared", 5)
-        if not crossing.struck:
+        if not crossing.breached:
             return
         name, actions = BREACH["ardupilot"]
         action = actions[int(self._parameters.get(name))]
@@ -156,9 +161,9 @@ class CopterFailsafes(FailsafeChecks):
                 action = Action.DISARM
             elif crossing.beyond_m > _GIVE_UP_M:
                 action = Action.LAND
-        yield Failsafe(Cause.FENCE, action, f"{names(crossing.struck)} breached", 4)
+        yield Failsafe(Cause.FENCE, action, f"{names(crossing.breached)} breached", 4)
 
-    def _position(self, seen: Seen) -> Iterator[Strike]:
+    def _position(self, seen: Seen) -> Iterator[FailsafeEvent]:
         if self._ratio_most <= 0.0:
             return
         bad = self._variances_over(seen.health) >= 2 or not seen.health.position_ok

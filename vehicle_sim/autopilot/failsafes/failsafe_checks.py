@@ -52,13 +52,13 @@ class Cleared:
     severity: int = 6
 
 
-Strike: TypeAlias = Failsafe | Cleared
+FailsafeEvent: TypeAlias = Failsafe | Cleared
 
 
 class FailsafeChecks(ABC):
-    """Remembers what has struck, so that each is told and acted on once.
+    """Remembers what was triggered, so that each is told and acted on once.
 
-    There are two looks at the same thresholds, which `_learn` takes from the parameters: `quiet`,
+    There are two looks at the same thresholds, which `_learn` takes from the parameters: `nominal`,
     quick, at what is measured, and `check`, thorough, at what is made of it.
     """
 
@@ -93,7 +93,7 @@ class FailsafeChecks(ABC):
         self.reset()
 
     def reset(self) -> None:
-        """Disarmed: what strikes from the next arming on is new."""
+        """Disarmed: what is triggered from the next arming on is new."""
         self._charge = Charge.FINE
         self._first = True
         self.position_lost = False
@@ -106,7 +106,7 @@ class FailsafeChecks(ABC):
         self.station_lost = False
         return self.back_again if back else None
 
-    def quiet(self, wall_ns: int, sensed: Sensed, est: Estimated, sticks_lost: bool) -> bool:
+    def nominal(self, wall_ns: int, sensed: Sensed, est: Estimated, sticks_lost: bool) -> bool:
         """Whether `check` would find nothing, the fence aside, and change nothing.
 
         Nearly always so, and much cheaper than to check.
@@ -114,7 +114,7 @@ class FailsafeChecks(ABC):
         if self._first or sticks_lost or self.sticks_lost or self.position_lost:
             return False
         self._look_up()
-        return not self._silent(wall_ns) and self._well(sensed, est)
+        return not self._silent(wall_ns) and self._within_limits(sensed, est)
 
     def _look_up(self) -> None:
         """The thresholds, if a parameter has changed."""
@@ -134,13 +134,13 @@ class FailsafeChecks(ABC):
         """Parameters have changed."""
 
     @abstractmethod
-    def _well(self, sensed: Sensed, est: Estimated) -> bool:
+    def _within_limits(self, sensed: Sensed, est: Estimated) -> bool:
         """Battery and position are far from any failsafe."""
 
-    def check(self, seen: Seen) -> list[Strike]:
-        """What strikes and what clears now, in no order of weight."""
+    def check(self, seen: Seen) -> list[FailsafeEvent]:
+        """What is triggered and what is cleared now, in no order of weight."""
         self._look_up()
-        begun: list[Strike] = []
+        begun: list[FailsafeEvent] = []
         if self._first:
             self._first = False
             begun = list(self._begin(seen))
@@ -154,23 +154,23 @@ class FailsafeChecks(ABC):
         ]
 
     @abstractmethod
-    def _begin(self, seen: Seen) -> Iterator[Strike]:
+    def _begin(self, seen: Seen) -> Iterator[FailsafeEvent]:
         """Just armed: what is wrong already was accepted with it, and may be told."""
 
     @abstractmethod
-    def _battery(self, seen: Seen) -> Iterator[Strike]: ...
+    def _battery(self, seen: Seen) -> Iterator[FailsafeEvent]: ...
 
     @abstractmethod
-    def _station(self, seen: Seen) -> Iterator[Strike]: ...
+    def _station(self, seen: Seen) -> Iterator[FailsafeEvent]: ...
 
     @abstractmethod
-    def _sticks(self, seen: Seen) -> Iterator[Strike]: ...
+    def _sticks(self, seen: Seen) -> Iterator[FailsafeEvent]: ...
 
     @abstractmethod
-    def _fence(self, seen: Seen) -> Iterator[Strike]: ...
+    def _fence(self, seen: Seen) -> Iterator[FailsafeEvent]: ...
 
     @abstractmethod
-    def _position(self, seen: Seen) -> Iterator[Strike]: ...
+    def _position(self, seen: Seen) -> Iterator[FailsafeEvent]: ...
 
     def check_disarmed(self, wall_ns: int, power: Power, remaining: float) -> Iterator[Failsafe]:
         """What is only told, once each, while nothing can be done about it."""

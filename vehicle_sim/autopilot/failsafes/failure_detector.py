@@ -56,23 +56,25 @@ class Posture:
 
 
 class FailureDetector(ABC):
-    """Remembers what has struck since arming."""
+    """Remembers what was triggered since arming."""
 
-    __slots__ = ("_armed_ns", "_calm_cos", "_parameters", "_struck", "_timers", "_version")
+    __slots__ = ("_armed_ns", "_nominal_cos", "_parameters", "_timers", "_triggered", "_version")
 
     def __init__(self, parameters: Parameters) -> None:
         self._parameters = parameters
         self._version = -1
-        self._calm_cos = 1.0
+        self._nominal_cos = 1.0
         self.reset()
 
     def reset(self) -> None:
         """Disarmed."""
         self._armed_ns: int | None = None
         self._timers: dict[str, int] = {}  # since when something has been so
-        self._struck: set[str] = set()
+        self._triggered: set[str] = set()
 
-    def calm(self, upright: float, wanted: float, asked_most: float, thrust_least: float) -> bool:
+    def nominal(
+        self, upright: float, wanted: float, asked_most: float, thrust_least: float
+    ) -> bool:
         """Whether nothing can be wrong, so that there is nothing to look at more closely.
 
         Cosines of the lean and of the wanted lean; the hardest motor's command, and what the
@@ -82,10 +84,10 @@ class FailureDetector(ABC):
             return False
         if self._version != self._parameters.version:
             self._version = self._parameters.version
-            self._calm_cos = cos(radians(self._least_lean_deg()))
+            self._nominal_cos = cos(radians(self._least_lean_deg()))
         return (
-            upright > self._calm_cos
-            and wanted > self._calm_cos
+            upright > self._nominal_cos
+            and wanted > self._nominal_cos
             and asked_most < _FULL_THRUST
             and thrust_least >= _DEAD_THRUST * asked_most
         )
@@ -95,7 +97,7 @@ class FailureDetector(ABC):
         """No upset counts below this lean."""
 
     def check(self, posture: Posture, flying: bool, by_rates: bool, now_ns: int) -> list[Failsafe]:
-        """What strikes now.  `by_rates`: flown by body rates, where any attitude is wanted."""
+        """What is triggered now.  `by_rates`: flown by body rates, where any attitude is wanted."""
         if self._armed_ns is None:
             self._armed_ns = now_ns
         return self._find(posture, flying, by_rates, now_ns)
@@ -109,12 +111,12 @@ class FailureDetector(ABC):
         """Whether `is_so` has now lasted for the limit, said once until it ends."""
         if not is_so:
             self._timers.pop(name, None)
-            self._struck.discard(name)
+            self._triggered.discard(name)
             return False
         if now_ns - self._timers.setdefault(name, now_ns) < limit_ns:
             return False
-        new = name not in self._struck
-        self._struck.add(name)
+        new = name not in self._triggered
+        self._triggered.add(name)
         return new
 
 

@@ -23,7 +23,12 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
     charge_of,
     highest,
 )
-from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, Seen, Strike
+from vehicle_sim.autopilot.failsafes.failsafe_checks import (
+    Cleared,
+    FailsafeChecks,
+    FailsafeEvent,
+    Seen,
+)
 from vehicle_sim.autopilot.interface import Power
 from vehicle_sim.autopilot.modes import Behaviour, StickLaw
 from vehicle_sim.autopilot.parameters.simulated import SimulatedBattery
@@ -70,7 +75,7 @@ class Px4Failsafes(FailsafeChecks):
         worst_m = get("COM_POS_FS_EPH")
         self._eph_most_m = worst_m if worst_m >= 0.0 else inf
 
-    def _well(self, sensed: Sensed, est: Estimated) -> bool:
+    def _within_limits(self, sensed: Sensed, est: Estimated) -> bool:
         return (
             not self._without_sticks
             and resting_v(sensed, self._believed) >= self._resting_least_v
@@ -80,13 +85,13 @@ class Px4Failsafes(FailsafeChecks):
     def _position_bad(self, ok: bool, accuracy_m: float) -> bool:
         return not ok or accuracy_m > self._eph_most_m
 
-    def _begin(self, seen: Seen) -> Iterator[Strike]:
+    def _begin(self, seen: Seen) -> Iterator[FailsafeEvent]:
         self._without_sticks = seen.sticks_lost
         self._charge = charge_of(self._parameters, seen.power, seen.remaining)
         if self._charge > Charge.FINE:
             yield Failsafe(Cause.BATTERY, Action.WARN, activated(Action.WARN), 2)
 
-    def _battery(self, seen: Seen) -> Iterator[Strike]:
+    def _battery(self, seen: Seen) -> Iterator[FailsafeEvent]:
         charge = charge_of(self._parameters, seen.power, seen.remaining)
         if charge <= self._charge:
             return
@@ -105,7 +110,7 @@ class Px4Failsafes(FailsafeChecks):
             yield _LOW
         self._low_told = low
 
-    def _station(self, seen: Seen) -> Iterator[Strike]:
+    def _station(self, seen: Seen) -> Iterator[FailsafeEvent]:
         if not self._station_gone(seen.wall_ns):
             return
         yield from self._station_words()
@@ -120,7 +125,7 @@ class Px4Failsafes(FailsafeChecks):
         if self._parameters.get("NAV_DLL_ACT") > 0.0:
             yield Failsafe(Cause.STATION, Action.WARN, NO_STATION, 4)
 
-    def _sticks(self, seen: Seen) -> Iterator[Strike]:
+    def _sticks(self, seen: Seen) -> Iterator[FailsafeEvent]:
         self._without_sticks = self._without_sticks and seen.sticks_lost
         bit = _RC_EXCEPTION.get(seen.mode.behaviour, 2)
         bit = 0 if seen.mode.law is not None else bit
@@ -133,18 +138,18 @@ class Px4Failsafes(FailsafeChecks):
             text = activated(action, "manual control loss")
             yield Failsafe(Cause.STICKS, action, text, 2, delayed=True)
 
-    def _fence(self, seen: Seen) -> Iterator[Strike]:
+    def _fence(self, seen: Seen) -> Iterator[FailsafeEvent]:
         name, actions = BREACH["px4"]
         action = actions.get(int(self._parameters.get(name)))
         if seen.crossing.cleared:
             yield Cleared(Cause.FENCE)
-        if not seen.crossing.struck or action is None:
+        if not seen.crossing.breached or action is None:
             return
         yield Failsafe(Cause.FENCE, Action.WARN, violation(), 2)
         delayed = action is not Action.HOLD
         yield Failsafe(Cause.FENCE, action, activated(action), 2, delayed)
 
-    def _position(self, seen: Seen) -> Iterator[Strike]:
+    def _position(self, seen: Seen) -> Iterator[FailsafeEvent]:
         bad = self._position_bad(seen.health.position_ok, seen.health.accuracy_m)
         was_lost, self.position_lost = self.position_lost, bad and seen.needs_position
         if was_lost and not bad:

@@ -102,7 +102,7 @@ _LIMITS: dict[Personality, Callable[[Parameters], FenceLimits]] = {
 class Crossing:
     """What changed in one check.  `beyond_m`: how far outside the newly crossed limits it is."""
 
-    struck: BreachKind
+    breached: BreachKind
     cleared: BreachKind
     beyond_m: float
 
@@ -121,10 +121,10 @@ class Geofence:
         "_idle",
         "_limits",
         "_parameters",
-        "_quiet_until_ns",
         "_room_m",
         "_seen_ne",
         "_since_ns",
+        "_suspended_until_ns",
         "_version",
         "breached",
         "fence",
@@ -145,7 +145,7 @@ class Geofence:
         self.breached = BreachKind.NONE
         self._count = 0
         self._since_ns = 0
-        self._quiet_until_ns = 0
+        self._suspended_until_ns = 0
         self._floor_on = False
         self._floor_barred = False
         self._again: dict[BreachKind, float] = {}
@@ -191,25 +191,25 @@ class Geofence:
         if not beyond and not self.breached:
             return NOTHING
         now = BreachKind.NONE
-        struck = BreachKind.NONE
+        breached = BreachKind.NONE
         for kind, by_m in beyond.items():
             now |= kind
             if kind not in self.breached or by_m >= self._again.get(kind, inf):
-                struck |= kind
+                breached |= kind
                 if kind is not BreachKind.POLYGON:
                     self._again[kind] = by_m + _AGAIN_M
         cleared = self.breached & ~now
         for kind in _NAMES:
             if kind in cleared:
                 self._again.pop(kind, None)
-        if struck:
+        if breached:
             self._since_ns = self._since_ns if self.breached else time_ns
-            self._count = min(self._count + struck.bit_count(), 65500)
+            self._count = min(self._count + breached.bit_count(), 65500)
         self.breached = now
-        if time_ns < self._quiet_until_ns:
-            struck = BreachKind.NONE
-        hardest = max((by for kind, by in beyond.items() if kind in struck), default=0.0)
-        return Crossing(struck, cleared, hardest)
+        if time_ns < self._suspended_until_ns:
+            breached = BreachKind.NONE
+        hardest = max((by for kind, by in beyond.items() if kind in breached), default=0.0)
+        return Crossing(breached, cleared, hardest)
 
     def _outside(self, pos_ned: Vec3, home_ned: Vec3) -> dict[BreachKind, float]:
         """The limits that this place is beyond, and by how many metres (0 for the polygons)."""
@@ -271,7 +271,7 @@ class Geofence:
     def taken_over(self, time_ns: int) -> None:
         """The operator flies out of a breach himself: no action for a while (ArduCopter)."""
         if self.breached and self._parameters.rules.pilot_suspends_fence:
-            self._quiet_until_ns = time_ns + _RECOVERY_NS
+            self._suspended_until_ns = time_ns + _RECOVERY_NS
 
     # --------------------------------------------------------------------------- report
 
@@ -294,7 +294,7 @@ class Geofence:
             self._since_ns,
         )
 
-    def misfit(self) -> str | None:
+    def settings_error(self) -> str | None:
         """What of ArduCopter's own settings contradicts itself, in AC_Fence's words."""
         limits = self.limits
         parameters = self._parameters

@@ -46,14 +46,14 @@ _INFO = 6  # MAV_SEVERITY
 class ItemTexts:
     """Each item is named once when it begins; those that a mission begins with, with the mission.
 
-    `told`: whether this autopilot says anything of them (PX4 does not).
+    `tells`: whether this autopilot says anything of them (PX4 does not).
     """
 
-    __slots__ = ("_circles", "_named_up_to", "_told", "_vehicle")
+    __slots__ = ("_circles", "_named_up_to", "_tells", "_vehicle")
 
-    def __init__(self, vehicle: MissionVehicle, told: bool) -> None:
+    def __init__(self, vehicle: MissionVehicle, tells: bool) -> None:
         self._vehicle = vehicle
-        self._told = told
+        self._tells = tells
         self._named_up_to = -1
         self._circles: int | None = None
 
@@ -76,17 +76,17 @@ class ItemTexts:
     def circling(self, item: PlanItem, completed: int | None) -> None:
         """A whole circle of LOITER_TURNS is over, or the first begins (0); the last one, too, is
         followed by the number of a next one, as recorded."""
-        if self._told and completed != self._circles and completed is not None:
+        if self._tells and completed != self._circles and completed is not None:
             text = f"Mission: starting circle {completed + 1}/{int(item.p1)}"
             self._vehicle.emit(StatusText(_INFO, text))
         self._circles = completed
 
     def reached(self, item: PlanItem) -> None:
-        if self._told and item.command in _TOLD_WHEN_REACHED:
+        if self._tells and item.command in _TOLD_WHEN_REACHED:
             self._vehicle.emit(StatusText(_INFO, f"Reached command #{item.seq}"))
 
     def _name(self, item: PlanItem) -> None:
-        if not self._told:
+        if not self._tells:
             return
         self._vehicle.emit(
             StatusText(_INFO, f"Mission: {item.seq} {COPTER_ITEMS.get(item.command, '')}")

@@ -52,7 +52,7 @@ class Mission:
         "_before_ned",
         "_by_home",
         "_circle",
-        "_errands",
+        "_commands",
         "_first_task",
         "_goal",
         "_jumps",
@@ -74,8 +74,8 @@ class Mission:
         self._parameters = parameters
         self._vehicle = vehicle
         self._rules = parameters.rules
-        self._texts = ItemTexts(vehicle, told=self._rules.names_mission_items)
-        self._errands = MissionCommands(vehicle, reports=self._rules.commands_are_reached)
+        self._texts = ItemTexts(vehicle, tells=self._rules.names_mission_items)
+        self._commands = MissionCommands(vehicle, reports=self._rules.commands_are_reached)
         self._jumps = Jumps()
         self.load(())
 
@@ -92,7 +92,7 @@ class Mission:
         self.started = False
         self._last = len(self.items) - 1
         self._jumps.forget()
-        self._errands.forget()
+        self._commands.forget()
         self._by_home = False
         self._goal: Vec3 | None = None
         self._before_ned: Vec3 | None = None
@@ -112,7 +112,7 @@ class Mission:
         self.current = self._next = max(seq, self._rules.first_mission_item)
         self.finished = False
         self._leg = None
-        self._errands.drop()
+        self._commands.drop()
         return True
 
     def limit(self, last: int) -> None:
@@ -187,7 +187,7 @@ class Mission:
             self._until_ns = None
             self._vehicle.emit(MissionReached(item.seq))
             for passed in self.items[self._next : index]:
-                self._errands.put(passed)
+                self._commands.put(passed)
             self.current = self._next = index + 1
         return False
 
@@ -203,7 +203,7 @@ class Mission:
         self._next = max(self._next, self._rules.first_mission_item)
         self.current = max(self.current, self._rules.first_mission_item)
         self._leg = None
-        self._errands.guided_limits = GuidedLimits()
+        self._commands.guided_limits = GuidedLimits()
         self.announce_begin()
         self._goal = s.stop_ned
         self._before_ned = None
@@ -221,12 +221,12 @@ class Mission:
         if not self.finished:
             self._go_on(s, turner)
         if not self.finished:
-            self._errands.work(s, self._goal)
+            self._commands.run_commands(s, self._goal)
         if self._by_home:
             self._mind_home(s, turner)
         demand = self._fly(s, turner)
         if not self.finished:
-            self._errands.attend(s, turner)
+            self._commands.update_payload(s, turner)
         return demand
 
     def touched_down(self) -> None:
@@ -255,7 +255,7 @@ class Mission:
             self._reached()
         for _ in range(_SEARCHED_MAX):
             if self._next > self._last:
-                self.finished = self._errands.idle
+                self.finished = self._commands.idle
                 return
             item = self.items[self._next]
             self.current = self._next
@@ -266,7 +266,7 @@ class Mission:
             if item.command in JUMPS:
                 self._jump(item)
             else:
-                self._errands.put(item)
+                self._commands.put(item)
                 self._next += 1
                 self._texts.start(item)
 
@@ -275,7 +275,7 @@ class Mission:
         self._vehicle.emit(MissionReached(item.seq))
         self._texts.reached(item)
         self._leg = None
-        self._errands.drop()
+        self._commands.drop()
 
     def _jump(self, item: PlanItem) -> None:
         there = self._jumps.leads_to(item, self.items)
@@ -290,7 +290,7 @@ class Mission:
         self._texts.start(item)
         self._circle = None
         if item.command == Cmd.RETURN:
-            self._errands.work(s, self._goal)
+            self._commands.run_commands(s, self._goal)
             if self._vehicle.leave_for_return():
                 # As in PX4 since 1.16: the return mode takes over, the mission is complete.
                 self.current = self._last
@@ -346,7 +346,7 @@ class Mission:
                 return leg_of(item, place, goal, s, own, accept_m, self._guided_limits)
 
     def _guided_limits(self) -> GuidedLimits:
-        return self._errands.guided_limits
+        return self._commands.guided_limits
 
     def _after(self, item: PlanItem, place: Vec3) -> tuple[Vec3 | None, bool]:
         """Where a spline goes on to without a stop, and whether as a spline; None = it ends at

@@ -96,7 +96,7 @@ class MissionCommands:
     def idle(self) -> bool:
         return not self._list
 
-    def work(self, s: Situation, goal_ned: Vec3 | None) -> None:
+    def run_commands(self, s: Situation, goal_ned: Vec3 | None) -> None:
         """Down the list, as far as no condition holds it up; `goal_ned` is what is flown to."""
         while self._list:
             item = self._list[0]
@@ -173,7 +173,7 @@ class MissionCommands:
             case _:
                 pass
 
-    def attend(self, s: Situation, turner: Turner) -> None:
+    def update_payload(self, s: Situation, turner: Turner) -> None:
         """Point at the region of interest; take the picture that is due by distance."""
         if self._roi_ned is not None:
             face(self._roi_ned, s, turner)
