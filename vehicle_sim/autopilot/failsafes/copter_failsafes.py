@@ -9,14 +9,12 @@ from collections.abc import Iterator
 from math import inf
 
 from vehicle_sim.autopilot.failsafes.failsafe import (
-    BATTERY,
-    BREACH,
     CAPACITY,
-    STATION_LOSS,
-    STICKS_LOSS,
     VOLTAGE,
     Action,
     Cause,
+    Charge,
+    Choice,
     Failsafe,
     by_capacity,
     by_voltage,
@@ -41,6 +39,55 @@ _EKF_CHECKS = 10  # of ekf_check: a second of bad ones in a row
 _GOES_ON = {
     Behaviour.MISSION: "Continuing Auto Mode",
     Behaviour.GUIDED: "Continuing Guided Mode",
+}
+
+# Without a SmartRTL, and without a landing item in the mission, ArduCopter falls back so.
+_STATION_LOSS = Choice(
+    "FS_GCS_ENABLE",
+    {
+        1: Action.RETURN,
+        3: Action.RETURN,
+        4: Action.LAND,
+        5: Action.LAND,
+        6: Action.RETURN,
+        7: Action.BRAKE,
+    },
+)
+_STICKS_LOSS = Choice(
+    "FS_THR_ENABLE",
+    {
+        1: Action.RETURN,
+        2: Action.RETURN,
+        3: Action.LAND,
+        4: Action.RETURN,
+        5: Action.LAND,
+        6: Action.RETURN,
+        7: Action.BRAKE,
+    },
+)
+_BREACH = Choice(
+    "FENCE_ACTION",
+    {
+        0: Action.WARN,
+        1: Action.RETURN,
+        2: Action.LAND,
+        3: Action.RETURN,
+        4: Action.BRAKE,
+        5: Action.LAND,
+    },
+)
+_EMPTY = {
+    1: Action.LAND,
+    2: Action.RETURN,
+    3: Action.RETURN,
+    4: Action.LAND,
+    5: Action.TERMINATE,
+    6: Action.RETURN,
+    7: Action.BRAKE,
+}
+_BATTERY = {
+    Charge.LOW: Choice("BATT_FS_LOW_ACT", _EMPTY),
+    Charge.CRITICAL: Choice("BATT_FS_CRT_ACT", _EMPTY),
 }
 
 
@@ -103,8 +150,7 @@ class CopterFailsafes(FailsafeChecks):
         self._charge = charge
         self.battery_failed = True
         self._low_since_ns = None
-        name, actions = BATTERY["ardupilot"][charge]
-        action = actions.get(int(get(name)), Action.WARN)
+        action = _BATTERY[charge].of(self._parameters) or Action.WARN
         power = seen.power
         text = f"Battery 1 is {charge.name.lower()} {power.voltage_v:.2f}V used "
         text += f"{power.consumed_mah:.0f} mAh"
@@ -112,14 +158,12 @@ class CopterFailsafes(FailsafeChecks):
         yield self._copter("Battery", Cause.BATTERY, action, seen)
 
     def _station(self, seen: Seen) -> Iterator[FailsafeEvent]:
-        name, actions = STATION_LOSS["ardupilot"]
-        action = actions.get(int(self._parameters.get(name)))
+        action = _STATION_LOSS.of(self._parameters)
         if action is not None and self._station_gone(seen.wall_ns):
             yield self._copter("GCS", Cause.STATION, action, seen)
 
     def _sticks(self, seen: Seen) -> Iterator[FailsafeEvent]:
-        name, actions = STICKS_LOSS["ardupilot"]
-        action = actions.get(int(self._parameters.get(name)))
+        action = _STICKS_LOSS.of(self._parameters)
         was_lost, self.sticks_lost = self.sticks_lost, seen.sticks_lost
         if action is None:
             return
@@ -154,8 +198,7 @@ class CopterFailsafes(FailsafeChecks):
             yield Cleared(Cause.FENCE, "Fence breach cleared", 5)
         if not crossing.breached:
             return
-        name, actions = BREACH["ardupilot"]
-        action = actions[int(self._parameters.get(name))]
+        action = _BREACH.actions[int(self._parameters.get(_BREACH.parameter))]
         if action is not Action.WARN:
             if not seen.flying:
                 action = Action.DISARM

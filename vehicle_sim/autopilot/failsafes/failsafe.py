@@ -89,31 +89,18 @@ def activated(action: Action, cause: str = "") -> str:
 
 # --------------------------------------------------------------------------- actions by parameter
 
-_PX4_LOSS = {
-    1: Action.HOLD,
-    2: Action.RETURN,
-    3: Action.LAND,
-    5: Action.TERMINATE,
-    6: Action.DISARM,
-}
-# Without a SmartRTL, and without a landing item in the mission, ArduCopter falls back so.
-_COPTER_LOSS = {
-    1: Action.RETURN,
-    3: Action.RETURN,
-    4: Action.LAND,
-    5: Action.LAND,
-    6: Action.RETURN,
-    7: Action.BRAKE,
-}
-_COPTER_BATTERY = {
-    1: Action.LAND,
-    2: Action.RETURN,
-    3: Action.RETURN,
-    4: Action.LAND,
-    5: Action.TERMINATE,
-    6: Action.RETURN,
-    7: Action.BRAKE,
-}
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Choice:
+    """The parameter that says what is done about a cause, and what each of its values means."""
+
+    parameter: str
+    actions: dict[int, Action]
+
+    def of(self, parameters: Parameters) -> Action | None:
+        """None: nothing."""
+        return self.actions.get(int(parameters.get(self.parameter)))
+
 
 OFFBOARD_LOSS: dict[int, Action] = {
     0: Action.POSITION,
@@ -126,51 +113,6 @@ OFFBOARD_LOSS: dict[int, Action] = {
     7: Action.DISARM,
 }
 """COM_OBL_RC_ACT."""
-
-STATION_LOSS: dict[Personality, tuple[str, dict[int, Action]]] = {
-    "px4": ("NAV_DLL_ACT", _PX4_LOSS),
-    "ardupilot": ("FS_GCS_ENABLE", _COPTER_LOSS),
-}
-
-STICKS_LOSS: dict[Personality, tuple[str, dict[int, Action]]] = {
-    "px4": ("NAV_RCL_ACT", _PX4_LOSS),
-    "ardupilot": (
-        "FS_THR_ENABLE",
-        {
-            1: Action.RETURN,
-            2: Action.RETURN,
-            3: Action.LAND,
-            4: Action.RETURN,
-            5: Action.LAND,
-            6: Action.RETURN,
-            7: Action.BRAKE,
-        },
-    ),
-}
-
-BREACH: dict[Personality, tuple[str, dict[int, Action]]] = {
-    "px4": (
-        "GF_ACTION",
-        {
-            1: Action.WARN,
-            2: Action.HOLD,
-            3: Action.RETURN,
-            4: Action.TERMINATE,
-            5: Action.LAND,
-        },
-    ),
-    "ardupilot": (
-        "FENCE_ACTION",
-        {
-            0: Action.WARN,
-            1: Action.RETURN,
-            2: Action.LAND,
-            3: Action.RETURN,
-            4: Action.BRAKE,
-            5: Action.LAND,
-        },
-    ),
-}
 
 MOTOR_FAILURE: dict[int, Action] = {
     0: Action.WARN,
@@ -189,26 +131,6 @@ class Charge(IntEnum):
     LOW = 1
     CRITICAL = 2
     EMERGENCY = 3
-
-
-BATTERY: dict[Personality, dict[Charge, tuple[str, dict[int, Action]]]] = {
-    "px4": {
-        Charge.LOW: ("COM_LOW_BAT_ACT", {}),
-        Charge.CRITICAL: (
-            "COM_LOW_BAT_ACT",
-            {1: Action.RETURN, 2: Action.LAND, 3: Action.RETURN},
-        ),
-        Charge.EMERGENCY: (
-            "COM_LOW_BAT_ACT",
-            {1: Action.RETURN, 2: Action.LAND, 3: Action.LAND},
-        ),
-    },
-    "ardupilot": {
-        Charge.LOW: ("BATT_FS_LOW_ACT", _COPTER_BATTERY),
-        Charge.CRITICAL: ("BATT_FS_CRT_ACT", _COPTER_BATTERY),
-        Charge.EMERGENCY: ("BATT_FS_CRT_ACT", _COPTER_BATTERY),
-    },
-}
 
 
 Thresholds: TypeAlias = tuple[tuple[Charge, str], ...]

@@ -10,14 +10,11 @@ from math import inf
 
 from vehicle_sim.autopilot.control.battery_charge import resting_v, voltage_of
 from vehicle_sim.autopilot.failsafes.failsafe import (
-    BATTERY,
-    BREACH,
     REMAINING,
-    STATION_LOSS,
-    STICKS_LOSS,
     Action,
     Cause,
     Charge,
+    Choice,
     Failsafe,
     activated,
     charge_of,
@@ -40,6 +37,27 @@ from vehicle_sim.plant.sensed import Sensed
 _RC_EXCEPTION = {Behaviour.MISSION: 1, Behaviour.GUIDED: 4}
 
 _ROUNDING_V = 1e-6
+
+_LOSS = {
+    1: Action.HOLD,
+    2: Action.RETURN,
+    3: Action.LAND,
+    5: Action.TERMINATE,
+    6: Action.DISARM,
+}
+_STATION_LOSS = Choice("NAV_DLL_ACT", _LOSS)
+_STICKS_LOSS = Choice("NAV_RCL_ACT", _LOSS)
+_BREACH = Choice(
+    "GF_ACTION",
+    {1: Action.WARN, 2: Action.HOLD, 3: Action.RETURN, 4: Action.TERMINATE, 5: Action.LAND},
+)
+_BATTERY = {
+    Charge.LOW: Choice("COM_LOW_BAT_ACT", {}),
+    Charge.CRITICAL: Choice(
+        "COM_LOW_BAT_ACT", {1: Action.RETURN, 2: Action.LAND, 3: Action.RETURN}
+    ),
+    Charge.EMERGENCY: Choice("COM_LOW_BAT_ACT", {1: Action.RETURN, 2: Action.LAND, 3: Action.LAND}),
+}
 
 NO_STATION = "Preflight Fail: No connection to the ground control station"
 _LOW = Failsafe(Cause.BATTERY, Action.WARN, "Preflight Fail: low battery", 0)
@@ -96,8 +114,7 @@ class Px4Failsafes(FailsafeChecks):
         if charge <= self._charge:
             return
         self._charge = charge
-        name, actions = BATTERY["px4"][charge]
-        action = actions.get(int(self._parameters.get(name)), Action.WARN)
+        action = _BATTERY[charge].of(self._parameters) or Action.WARN
         yield _LOW
         if charge is Charge.EMERGENCY:
             yield from _EMPTY
@@ -114,8 +131,7 @@ class Px4Failsafes(FailsafeChecks):
         if not self._station_gone(seen.wall_ns):
             return
         yield from self._station_words()
-        name, actions = STATION_LOSS["px4"]
-        action = actions.get(int(self._parameters.get(name)))
+        action = _STATION_LOSS.of(self._parameters)
         if action is not None and seen.mode.behaviour is not Behaviour.LAND:
             text = activated(action, "GCS connection loss")
             yield Failsafe(Cause.STATION, action, text, 2, delayed=True)
@@ -132,15 +148,13 @@ class Px4Failsafes(FailsafeChecks):
         excepted = int(self._parameters.get("COM_RCL_EXCEPT")) & bit
         lost = seen.sticks_lost and not self._without_sticks and not excepted
         struck, self.sticks_lost = lost and not self.sticks_lost, lost
-        name, actions = STICKS_LOSS["px4"]
-        action = actions.get(int(self._parameters.get(name)))
+        action = _STICKS_LOSS.of(self._parameters)
         if struck and action is not None:
             text = activated(action, "manual control loss")
             yield Failsafe(Cause.STICKS, action, text, 2, delayed=True)
 
     def _fence(self, seen: Seen) -> Iterator[FailsafeEvent]:
-        name, actions = BREACH["px4"]
-        action = actions.get(int(self._parameters.get(name)))
+        action = _BREACH.of(self._parameters)
         if seen.crossing.cleared:
             yield Cleared(Cause.FENCE)
         if not seen.crossing.breached or action is None:
