@@ -7,6 +7,8 @@ measures the other side (setpoint and ground-station silence) runs on wall time.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from vehicle_sim.autopilot.arming_requests import ArmingRequests
 from vehicle_sim.autopilot.battery_monitor import BatteryMonitor
 from vehicle_sim.autopilot.bounds import Bounds
@@ -25,7 +27,7 @@ _DECIDE_EVERY = 25  # 10 Hz
 _STRENGTH_LEAST = 0.5  # of a full battery's voltage; for less the motors do not make up
 
 
-def _turn_of(index: int) -> int:
+def turn_of(index: int) -> int:
     """The step in which it decides: vehicles of a fleet take turns, just before the guidance's."""
     return GUIDE_EVERY * (index + 1) - 1
 
@@ -35,39 +37,25 @@ def phase_ns(index: int) -> int:
 
     Over a fleet the second is used evenly, so that no heartbeats come all at once.
     """
-    return _turn_of(index) * DT_NS % 1_000_000_000
+    return turn_of(index) * DT_NS % 1_000_000_000
 
 
+@dataclass(slots=True, eq=False, repr=False)
 class Decisions:
-    """Time passes."""
+    """Time passes; `_phase` is the step of each turn in which it decides."""
 
-    def __init__(
-        self,
-        index: int,
-        state: FlightState,
-        battery: BatteryMonitor,
-        bounds: Bounds,
-        health_checks: HealthChecks,
-        failsafe_actions: FailsafeActions,
-        task_flight: TaskFlight,
-        arming: ArmingRequests,
-        mode_changes: ModeChanges,
-        camera: CameraRequests,
-        faults: FaultInjection,
-        airflow: Airflow,
-    ) -> None:
-        self._phase = _turn_of(index)
-        self._state = state
-        self._battery = battery
-        self._bounds = bounds
-        self._health_checks = health_checks
-        self._failsafe_actions = failsafe_actions
-        self._task_flight = task_flight
-        self._arming = arming
-        self._mode_changes = mode_changes
-        self._camera = camera
-        self._faults = faults
-        self._airflow = airflow
+    _phase: int
+    _state: FlightState
+    _battery: BatteryMonitor
+    _bounds: Bounds
+    _health_checks: HealthChecks
+    _failsafe_actions: FailsafeActions
+    _task_flight: TaskFlight
+    _arming: ArmingRequests
+    _mode_changes: ModeChanges
+    _camera: CameraRequests
+    _faults: FaultInjection
+    _airflow: Airflow
 
     @property
     def due_step(self) -> int:

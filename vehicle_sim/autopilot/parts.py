@@ -13,7 +13,7 @@ from vehicle_sim.autopilot.bounds import Bounds
 from vehicle_sim.autopilot.calibration_requests import CalibrationRequests
 from vehicle_sim.autopilot.camera_requests import CameraRequests
 from vehicle_sim.autopilot.control.airflow import Airflow
-from vehicle_sim.autopilot.decisions import Decisions
+from vehicle_sim.autopilot.decisions import Decisions, turn_of
 from vehicle_sim.autopilot.failsafe_actions import FailsafeActions
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.failsafes.copter_failsafes import CopterFailsafes
@@ -123,7 +123,7 @@ class Parts:
         self.calibrations = CalibrationRequests(state)
         self.view = View(state, self.health_checks, self.acting, mission)
         self.decisions = Decisions(
-            index,
+            turn_of(index),
             state,
             self.battery,
             bounds,
