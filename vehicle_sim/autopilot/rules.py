@@ -22,18 +22,19 @@ class AutopilotRules:
     """`not_now` is the answer to what its own checks refuse.
 
     A value LIKE_THIS is the name of the parameter that says it.  None instead of a name means that
-    there is no such parameter, and that what it would bring about does not happen.
+    there is no such parameter, and, if nothing else is said, that what it would bring about does
+    not happen.
     """
 
     not_now: Result = each(Result.TEMPORARILY_REJECTED, Result.FAILED)
 
     # The parts of the autopilot: battery, start, what is shown.
-    idle_thrust: str | None = each(None, "MOT_SPIN_ARM")  # the thrust of idle motors, 0..1
+    idle_thrust: str | None = each(None, "MOT_SPIN_ARM")  # of idle motors, 0..1
     battery_monitor: str | None = each(None, "BATT_MONITOR")  # if 0, no battery is measured
-    battery_capacity: str = each("BAT1_CAPACITY", "BATT_CAPACITY")  # the capacity [mAh]
+    battery_capacity: str = each("BAT1_CAPACITY", "BATT_CAPACITY")  # [mAh]
     charge_by_voltage: bool = PX4_ONLY  # where the capacity is 0; else it counts as empty then
     origin_text: str = each("GPS fix", "EKF3 IMU0 origin set")  # said when local NED has its origin
-    failures_allowed_by: str | None = each("SYS_FAILURE_EN", None)  # takes INJECT_FAILURE if 1
+    failures_allowed_by: str | None = each("SYS_FAILURE_EN", None)  # 1 = they are; None = always
     parameters_reset_at_once: bool = PX4_ONLY  # else with the next reboot
     satellites: str | None = each("SIM_GPS_USED", None)  # how many the receiver uses
     mav_type: str | None = each("MAV_TYPE", None)  # HEARTBEAT's type; None = a quadrotor
@@ -41,13 +42,14 @@ class AutopilotRules:
 
     # The parts of the autopilot: arming.
     tells_unready: bool = COPTER_ONLY  # what is against arming is told unasked (AP_Arming::update)
-    arming_check_armed: Result = each(Result.ACCEPTED, Result.TEMPORARILY_REJECTED)  # its answer
+    # The answer to RUN_PREARM_CHECKS while armed.
+    arming_check_armed: Result = each(Result.ACCEPTED, Result.TEMPORARILY_REJECTED)
     calibration_denies_arming: bool = PX4_ONLY  # also forced arming
     calibrated_compass_needs_reboot: bool = COPTER_ONLY  # FIXED_MAG_CAL_YAW: it does not arm before
     arm_authorization: bool = PX4_ONLY  # another system may be asked before arming (COM_ARM_AUTH_*)
     armed_text: str = each("Armed by external command", "Arming motors")  # by a command
     disarmed_text: str = each("Disarmed by external command", "Disarming motors")  # the same
-    disarming_denied_text: str | None = each("Disarming denied! Not landed", None)  # in flight
+    disarming_denied_text: str | None = each("Disarming denied! Not landed", None)  # when in flight
     termination_lasts: bool = PX4_ONLY  # until it is ended; else it is no more than a disarming
     mode_back_after_disarming: bool = PX4_ONLY  # to the one that the user chose (UserModeIntention)
 
@@ -99,7 +101,7 @@ class AutopilotRules:
     infinite_parameters: bool = PX4_ONLY  # a parameter may be infinite
     cuts_parameters_to_fit: bool = COPTER_ONLY  # a fraction or too large a number is not refused
     rate_limit_may_be_zero: bool = PX4_ONLY  # 0 is a limit of the body rates; else it is none
-    hover_thrust: str = each("MPC_THR_HOVER", "MOT_THST_HOVER")  # the thrust of hover, 0..1
+    hover_thrust: str = each("MPC_THR_HOVER", "MOT_THST_HOVER")  # 0..1
 
     # The fence.
     fence_action: str = each("GF_ACTION", "FENCE_ACTION")  # on a breach; 0 = nothing
@@ -124,7 +126,7 @@ class AutopilotRules:
     flies_splines: bool = COPTER_ONLY  # NAV_SPLINE_WAYPOINT
     zero_keeps_height: bool = COPTER_ONLY  # an item of altitude 0 is as high as the one before
     terrain_items: bool = COPTER_ONLY  # heights above terrain are stored, not flown without data
-    payload_item_lasts: str | None = each("MIS_PD_TO", None)  # DO_GRIPPER and DO_WINCH [s]
+    payload_item_lasts: str | None = each("MIS_PD_TO", None)  # of DO_GRIPPER and DO_WINCH [s]
     items_need_sound_place: bool = COPTER_ONLY  # no altitude that is no number, no place off Earth
     placeless_in_mission_frame: bool = PX4_ONLY  # items without a place take no other frame
     jumps_may_lead_beyond: bool = PX4_ONLY  # DO_JUMP to an item that is not there is stored
@@ -132,8 +134,8 @@ class AutopilotRules:
     # Take-off, landing, disarming.
     lifts_off_at_once: bool = PX4_ONLY  # else after TKOFF_SLEW_TIME, as the throttle comes to hover
     take_off_ramp: str | None = each("MPC_TKO_RAMP_T", None)  # how long the climb rate grows [s]
-    take_off_done_within: str | None = each("NAV_MC_ALT_RAD", None)  # so near the height [m]
-    land_speed_high: str | None = each(None, "LAND_SPEED_HIGH")  # of the upper part [cm/s]
+    take_off_done_within: str | None = each("NAV_MC_ALT_RAD", None)  # so near is enough [m]
+    land_speed_high: str | None = each(None, "LAND_SPEED_HIGH")  # upper part of a landing [cm/s]
     land_slowest_below: str | None = each("MPC_LAND_ALT2", None)  # where the slow-down ends [m]
     any_landing_disarms: bool = PX4_ONLY  # after a time; else only a mode that lands by itself
     disarmed_after_landing: str = each("Disarmed by landing", "Disarming motors")  # by itself
@@ -151,17 +153,17 @@ class AutopilotRules:
     thrust_may_be_climb_rate: bool = COPTER_ONLY  # in SET_ATTITUDE_TARGET, by GUID_OPTIONS
     brakes_after_last_setpoint: bool = COPTER_ONLY  # GUID_TIMEOUT; PX4 leaves the mode instead
     leader_by_id: bool = COPTER_ONLY  # FOLL_SYSID, or the first that is heard until it is silent
-    leader_height_by_home: str | None = each(None, "FOLL_ALT_TYPE")  # if 1, above each home
+    leader_height_by_home: str | None = each(None, "FOLL_ALT_TYPE")  # 1 = above each home
 
     # Sticks.
     joystick_overrides_channels: bool = COPTER_ONLY  # else a source of its own (COM_RC_IN_MODE)
-    channel_map: str = each("RC_MAP_", "RCMAP_")  # begin of which channel is which stick
-    channel_lasts: str = each("COM_RC_LOSS_T", "RC_OVERRIDE_TIME")  # overridden [s]
-    receiver_grace: str | None = each(None, "RC_FS_TIMEOUT")  # until sticks are lost, after it [s]
-    receiver_silent: str | None = each(None, "SIM_RC_FAIL")  # not 0 = there is none
-    arming_gesture: str = each("MAN_ARM_GESTURE", "ARMING_RUDDER")  # 0 = none arms
+    channel_map: str = each("RC_MAP_", "RCMAP_")  # begin of the names, one for each stick
+    channel_lasts: str = each("COM_RC_LOSS_T", "RC_OVERRIDE_TIME")  # an overridden one, so long [s]
+    receiver_grace: str | None = each(None, "RC_FS_TIMEOUT")  # so much later sticks are lost [s]
+    receiver_silent: str | None = each(None, "SIM_RC_FAIL")  # if not 0, it hears nothing
+    arming_gesture: str = each("MAN_ARM_GESTURE", "ARMING_RUDDER")  # 0 = sticks do not arm
     gesture_disarms_from: int = each(1, 2)  # from this value of it on the sticks disarm, too
-    own_station: str | None = each(None, "SYSID_MYGCS")  # by its system id
+    own_station: str | None = each(None, "SYSID_MYGCS")  # whose sticks and heartbeats count
 
 
 RULES: Final[dict[Personality, AutopilotRules]] = tables(AutopilotRules)
