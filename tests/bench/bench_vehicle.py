@@ -55,7 +55,7 @@ def hovering(
         first.step()
     assert abs(blocks.body.pos_d + HOVER_M) < 1.0
     engine = kind(specs(count), load())
-    engine.k = first.k
+    engine.steps.k = first.steps.k
     for lane in range(count):
         copy = engine.blocks(lane)
         for block in fields(blocks):

@@ -57,9 +57,9 @@ class Autopilot:
         self.parameters = parameters = params if params is not None else Parameters(personality)
         seat = seat or Seat(ScalarEngine([VehicleSpec(seed, index, home.lat_deg)], load()), 0)
         self.engine = seat.engine
-        self.state = state = FlightState(home, parameters, seat, boot)
-        self.blocks = state.blocks
-        self.parts = Parts(state, index, camera)
+        self.state = state = FlightState(home, parameters, seat.onboard, boot)
+        self.blocks = seat.engine.blocks(seat.lane)
+        self.parts = Parts(state, self.blocks, index, camera)
         self._forward(self.parts)
         self.parts.restart()
 

@@ -8,7 +8,8 @@ from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.autopilot.parameters.simulated import SimulatedBattery
 from vehicle_sim.autopilot.rules import RULES
 from vehicle_sim.control_loops.believed import Believed
-from vehicle_sim.engine.step import Blocks
+from vehicle_sim.control_loops.flight import Flight
+from vehicle_sim.plant.sensed import Sensed
 
 UNMEASURED = Power(0.0, -0.01, 0.0, -1)
 """As MAVLink says it: current and remaining charge of -1."""
@@ -17,11 +18,13 @@ UNMEASURED = Power(0.0, -0.01, 0.0, -1)
 class BatteryMonitor:
     """Voltage, current and charge, by the sensors or by the simulations' own parameters."""
 
-    def __init__(self, parameters: Parameters, blocks: Blocks, believed: Believed) -> None:
+    def __init__(
+        self, parameters: Parameters, sensed: Sensed, loops: Flight, believed: Believed
+    ) -> None:
         self._parameters = parameters
         self._rules = RULES[parameters.personality]
-        self._blocks = blocks
-        self._sensed = blocks.sensed
+        self._loops = loops
+        self._sensed = sensed
         self._believed = believed
         self._simulated = SimulatedBattery(parameters)
 
@@ -49,7 +52,7 @@ class BatteryMonitor:
     @property
     def charge_seen(self) -> float:
         """0..1: PX4, unless it is told a capacity, goes by the voltage; ArduCopter counts."""
-        f = self._blocks.flight
+        f = self._loops
         simulated = self._simulated.charge(0.25 * (f.u1 + f.u2 + f.u3 + f.u4))
         if simulated is not None:
             return simulated

@@ -60,7 +60,7 @@ class Decisions:
     @property
     def due_step(self) -> int:
         """The next step of the engine after which `live` has something to do."""
-        k = self._state.engine.k
+        k = self._state.steps.k
         if self._state.decision_requested:
             return k + 1
         every = GUIDE_EVERY if self._camera.camera.busy else _DECIDE_EVERY
@@ -69,7 +69,7 @@ class Decisions:
     def live(self) -> None:
         """After a step of the engine: decide, where a decision is due."""
         state = self._state
-        turn = (state.engine.k - self._phase) % _DECIDE_EVERY
+        turn = (state.steps.k - self._phase) % _DECIDE_EVERY
         if turn == 0 or state.decision_requested:
             state.decision_requested = False
             self._decide(turn == 0)
@@ -85,13 +85,13 @@ class Decisions:
             self._boot()
             state.outputs.update(state.time_ns)
             self._battery.update(state.armed, _DECIDE_EVERY * DT_NS * 1e-9)
-            sensed = state.blocks.sensed
+            sensed = state.sensed
             rates_frd = (sensed.gyro_x, sensed.gyro_y, sensed.gyro_z)
             for event in state.calibration.update(state.time_ns, rates_frd):
                 state.emit(event)
             strength = state.sensed.battery_v / state.believed.full_v
             least = _STRENGTH_LEAST
-            state.blocks.flight.strength_inv = 1.0 / (strength if strength > least else least)
+            state.loops.strength_inv = 1.0 / (strength if strength > least else least)
             self._feel_air(strength)
         if state.offboard_wanted:
             self._mode_changes.try_offboard()
@@ -112,7 +112,7 @@ class Decisions:
 
     def _feel_air(self, strength: float) -> None:
         state = self._state
-        f = state.blocks.flight
+        f = state.loops
         self._airflow.shake(state.sensed)
         if state.control.flying:
             spin = strength * (f.u1 + f.u2 + f.u3 + f.u4)

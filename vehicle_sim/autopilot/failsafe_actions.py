@@ -83,7 +83,7 @@ class FailsafeActions:
         if not self._health_checks.failsafes_nominal(s, crossing):
             events += self._failsafe_checks.check(self._health_checks.see(s, crossing))
         if not self._health_checks.flight_nominal:
-            by_rates = state.blocks.flight.attitude == BY_RATES
+            by_rates = state.loops.attitude == BY_RATES
             posture = self._health_checks.posture()
             events += self._failure_detector.check(posture, s.flying, by_rates, s.time_ns)
         for event in sorted(events, key=_order):

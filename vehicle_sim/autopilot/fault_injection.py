@@ -5,6 +5,7 @@ from __future__ import annotations
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.manual.sticks import Radio
 from vehicle_sim.autopilot.parameters.simulated import Simulated
+from vehicle_sim.engine.step import Blocks
 from vehicle_sim.engine.truth import inject, put_home
 from vehicle_sim.plant.faults import ClockJump, ModelFault, RcLost
 
@@ -12,8 +13,9 @@ from vehicle_sim.plant.faults import ClockJump, ModelFault, RcLost
 class FaultInjection:
     """All faults but a reboot, which concerns every part."""
 
-    def __init__(self, state: FlightState, radio: Radio) -> None:
+    def __init__(self, state: FlightState, blocks: Blocks, radio: Radio) -> None:
         self._state = state
+        self._blocks = blocks
         self._radio = radio
         self.restart()
 
@@ -34,7 +36,7 @@ class FaultInjection:
 
     def put_home(self) -> None:
         """Who stands is a simulator's vehicle again on its home ground; who flies stays there."""
-        put_home(self._state.blocks)
+        put_home(self._blocks)
 
     def inject(self, fault: ModelFault | RcLost | ClockJump) -> None:
         match fault:
@@ -43,4 +45,4 @@ class FaultInjection:
             case ClockJump(by_ns):
                 self._state.clock_off_ns += by_ns
             case _:
-                inject(fault, self._state.blocks)
+                inject(fault, self._blocks)

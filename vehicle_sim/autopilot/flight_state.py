@@ -22,7 +22,7 @@ from vehicle_sim.autopilot.servo_outputs import ServoOutputs
 from vehicle_sim.autopilot.speed_limits import SpeedLimits
 from vehicle_sim.autopilot.tasks.tasks import Hold
 from vehicle_sim.control_loops.trajectory import stopping_point
-from vehicle_sim.engine.step import DT_NS, Blocks, Seat
+from vehicle_sim.engine.step import DT_NS, Onboard
 from vehicle_sim.estimation.estimator import Health, health, position_ok
 from vehicle_sim.numerics.vectors import Quat, Vec3
 
@@ -39,18 +39,17 @@ class FlightState:
         self,
         ground: Geodetic,
         parameters: Parameters,
-        seat: Seat,
+        onboard: Onboard,
         boot: Boot,
     ) -> None:
         self.parameters = parameters
         self.personality = personality = parameters.personality
         self.rules: AutopilotRules = RULES[personality]
-        self.engine = seat.engine
-        self.blocks: Blocks = seat.engine.blocks(seat.lane)
-        self.sensed, self.est = self.blocks.sensed, self.blocks.est
-        self.believed = seat.engine.believed
-        self.control = FlightControl(self.blocks.flight, self.believed.idle, LAND_S[personality])
-        self.limits = SpeedLimits(parameters, self.control, self.blocks, self.believed)
+        self.steps = onboard.steps
+        self.sensed, self.est, self.loops = onboard.sensed, onboard.est, onboard.flight
+        self.believed = onboard.believed
+        self.control = FlightControl(self.loops, self.believed.idle, LAND_S[personality])
+        self.limits = SpeedLimits(parameters, self.control, onboard)
         self.ground = ground
         self.projection: Projection = projection(personality, ground)
         self.boot_sequence = BootSequence(personality, boot)
@@ -92,11 +91,11 @@ class FlightState:
 
     @property
     def time_ns(self) -> int:
-        return self.engine.k * DT_NS
+        return self.steps.k * DT_NS
 
     @property
     def clock_ns(self) -> int:
-        clock_ns = self.engine.k * DT_NS - self._boot_ns + self.clock_off_ns
+        clock_ns = self.steps.k * DT_NS - self._boot_ns + self.clock_off_ns
         return clock_ns if clock_ns > 0 else 0
 
     @property
@@ -145,7 +144,7 @@ class FlightState:
     @property
     def health(self) -> Health:
         """The estimate judged: once a step, for all who ask."""
-        k = self.engine.k
+        k = self.steps.k
         if self._judged is None or self._judged[0] != k:
             judged = health(self.est, self.sensed)
             self._judged = (k, self.boot_sequence.known(judged, self.age_ns))
@@ -155,7 +154,7 @@ class FlightState:
         """The situation with what only a change of task wants to know."""
         s = self.sense()
         s.heading_rad = heading_of(self.attitude)
-        f = self.blocks.flight
+        f = self.loops
         # Where the estimate has just jumped, the reference is still where it was before.
         sure = s.flying and f.resets == self.est.resets
         s.stop_ned = stopping_point(f, self.est, s.limits) if sure else s.pos_ned

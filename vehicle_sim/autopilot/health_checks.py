@@ -189,7 +189,7 @@ class HealthChecks:
     @property
     def flight_nominal(self) -> bool:
         state = self._state
-        est, f, sensed = state.est, state.blocks.flight, state.sensed
+        est, f, sensed = state.est, state.loops, state.sensed
         return self._failure_detector.nominal(
             1.0 - 2.0 * (est.qx * est.qx + est.qy * est.qy),
             1.0 - 2.0 * (f.sp_x * f.sp_x + f.sp_y * f.sp_y),
@@ -199,7 +199,7 @@ class HealthChecks:
 
     def posture(self) -> Posture:
         state = self._state
-        est, f, sensed = state.est, state.blocks.flight, state.sensed
+        est, f, sensed = state.est, state.loops, state.sensed
         w, x, y, z = est.qw, est.qx, est.qy, est.qz
         a, b, c, d = f.sp_w, f.sp_x, f.sp_y, f.sp_z
         up_is = (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))

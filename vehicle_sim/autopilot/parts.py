@@ -40,6 +40,7 @@ from vehicle_sim.autopilot.tasks.follow import Leader
 from vehicle_sim.autopilot.tasks.guided import SetpointStream
 from vehicle_sim.autopilot.transitions import Transitions
 from vehicle_sim.autopilot.view import View
+from vehicle_sim.engine.step import Blocks
 
 _FAILSAFE_CHECKS: dict[Personality, type[FailsafeChecks]] = {
     "px4": Px4Failsafes,
@@ -50,7 +51,8 @@ _FAILSAFE_CHECKS: dict[Personality, type[FailsafeChecks]] = {
 class Parts:
     """All the parts of one vehicle."""
 
-    def __init__(self, state: FlightState, index: int, camera: bool) -> None:
+    def __init__(self, state: FlightState, blocks: Blocks, index: int, camera: bool) -> None:
+        """`blocks` are for the simulator's own parts: they have the truth."""
         self.state = state
         parameters = state.parameters
         self.radio = radio = Radio(parameters)
@@ -62,8 +64,8 @@ class Parts:
         self.acting = ActingFailsafe(state.time_ns)
         auto_disarm = AutoDisarm()
 
-        self.battery = BatteryMonitor(parameters, state.blocks, state.believed)
-        self.faults = FaultInjection(state, radio)
+        self.battery = BatteryMonitor(parameters, state.sensed, state.loops, state.believed)
+        self.faults = FaultInjection(state, blocks, radio)
         self.camera = CameraRequests(state, camera)
         self.bounds = bounds = Bounds(state)
         mode_tasks = ModeTasks(state, bounds, radio, stream, leader)
@@ -121,7 +123,7 @@ class Parts:
             state, mission, mission_checks, self.arming, self.mode_changes, transitions
         )
         self.calibrations = CalibrationRequests(state)
-        self.view = View(state, self.health_checks, self.acting, mission)
+        self.view = View(state, blocks, self.health_checks, self.acting, mission)
         self.decisions = Decisions(
             turn_of(index),
             state,

@@ -9,21 +9,17 @@ from vehicle_sim.autopilot.control.gains import write_gains
 from vehicle_sim.autopilot.interface import SpeedType
 from vehicle_sim.autopilot.parameters.parameters import Parameters, Quantity
 from vehicle_sim.autopilot.rules import RULES
-from vehicle_sim.control_loops.believed import Believed
 from vehicle_sim.control_loops.trajectory import MotionLimits
-from vehicle_sim.engine.step import Blocks
+from vehicle_sim.engine.step import Onboard
 
 
 class SpeedLimits:
     """Made anew, with the gains of the loops, when a parameter or a wish has changed."""
 
-    def __init__(
-        self, parameters: Parameters, control: FlightControl, blocks: Blocks, believed: Believed
-    ) -> None:
+    def __init__(self, parameters: Parameters, control: FlightControl, onboard: Onboard) -> None:
         self._parameters = parameters
         self._control = control
-        self._blocks = blocks
-        self._believed = believed
+        self._onboard = onboard
         self.reset()
 
     def reset(self) -> None:
@@ -59,7 +55,8 @@ class SpeedLimits:
             self._parameters.get(self._parameters.rules.jerk),
             self._parameters.rules.law,
         )
-        write_gains(self._parameters, self._blocks.flight, self._blocks.est, self._believed)
+        onboard = self._onboard
+        write_gains(self._parameters, onboard.flight, onboard.est, onboard.believed)
         idle_thrust = RULES[self._parameters.personality].idle_thrust
         if idle_thrust is not None:
             self._control.idle = self._parameters.get(idle_thrust)

@@ -22,7 +22,7 @@ from vehicle_sim.autopilot.interface import (
 from vehicle_sim.autopilot.mission.mission import Mission
 from vehicle_sim.autopilot.modes import Behaviour, Flag
 from vehicle_sim.autopilot.tasks.orbit import Orbit
-from vehicle_sim.engine.step import state_bytes
+from vehicle_sim.engine.step import Blocks, state_bytes
 from vehicle_sim.engine.truth import motion_of
 from vehicle_sim.estimation.estimator import booted
 from vehicle_sim.numerics.vectors import Vec3
@@ -36,6 +36,7 @@ class View:
     """Reads, and changes nothing."""
 
     _state: FlightState
+    _blocks: Blocks
     _health_checks: HealthChecks
     _acting: ActingFailsafe
     _mission: Mission
@@ -49,7 +50,7 @@ class View:
     @property
     def truth(self) -> Truth:
         state = self._state
-        real = motion_of(state.blocks)
+        real = motion_of(self._blocks)
         where = state.projection.to_geodetic(real.pos_ned)
         return Truth(
             time_s=state.time_ns / 1e9,
@@ -68,7 +69,7 @@ class View:
 
     def state_bytes(self) -> bytes:
         """The whole numeric state; equal bytes are an equal flight."""
-        return state_bytes(self._state.blocks)
+        return state_bytes(self._blocks)
 
     @property
     def estimate(self) -> Estimate:
@@ -192,7 +193,7 @@ class View:
 
     @property
     def motor_outputs(self) -> tuple[float, float, float, float]:
-        f = self._state.blocks.flight
+        f = self._state.loops
         return (f.u1, f.u2, f.u3, f.u4)
 
     @property
@@ -216,7 +217,7 @@ class View:
 
     @property
     def attitude_goal(self) -> AttitudeGoal | None:
-        f = self._state.blocks.flight
+        f = self._state.loops
         if not f.flying:
             return None
         full_n = 4.0 * self._state.believed.thrust_max_n

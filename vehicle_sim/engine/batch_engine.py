@@ -8,7 +8,7 @@ import numpy as np
 
 from vehicle_sim.control_loops.believed import believed_of
 from vehicle_sim.control_loops.flight import Flight
-from vehicle_sim.engine.step import DT_S, Blocks, VehicleSpec, begin, live
+from vehicle_sim.engine.step import DT_S, Blocks, StepCount, VehicleSpec, begin, live
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.lanes import Lanes, batched
 from vehicle_sim.plant.airframe import Airframe
@@ -24,7 +24,7 @@ class BatchEngine:
     def __init__(
         self, specs: Sequence[VehicleSpec], airframe: Airframe, grade: SensorGrade = MEMS
     ) -> None:
-        self.k = 0
+        self.steps = StepCount()
         self.believed = believed_of(airframe, DT_S)
         self._plant = plant_of(airframe, DT_S)
         self._grade = grade
@@ -46,7 +46,7 @@ class BatchEngine:
         )
 
     def step(self) -> None:
-        self.k += 1
+        self.steps.k += 1
         # Both sides of a choice are computed here; the one that is not taken may be no number.
         with np.errstate(all="ignore"):
             self._live(
@@ -57,5 +57,5 @@ class BatchEngine:
                 self._plant,
                 self.believed,
                 self._grade,
-                self.k,
+                self.steps.k,
             )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from vehicle_sim.control_loops.believed import believed_of
 from vehicle_sim.control_loops.flight import Flight
-from vehicle_sim.engine.step import DT_S, Blocks, VehicleSpec, begin, live
+from vehicle_sim.engine.step import DT_S, Blocks, StepCount, VehicleSpec, begin, live
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.plant.airframe import Airframe
 from vehicle_sim.plant.body import Body
@@ -21,7 +21,7 @@ class ScalarEngine:
     def __init__(
         self, specs: Sequence[VehicleSpec], airframe: Airframe, grade: SensorGrade = MEMS
     ) -> None:
-        self.k = 0
+        self.steps = StepCount()
         self.believed = believed_of(airframe, DT_S)
         self._plant = plant_of(airframe, DT_S)
         self._grade = grade
@@ -35,7 +35,7 @@ class ScalarEngine:
         return self._vehicles[lane]
 
     def step(self) -> None:
-        self.k = k = self.k + 1
+        self.steps.k = k = self.steps.k + 1
         plant, believed, grade = self._plant, self.believed, self._grade
         for body, sensed, est, flight in self._rows:
             live(body, sensed, est, flight, plant, believed, grade, k)

@@ -57,14 +57,18 @@ class Blocks:
     flight: Flight
 
 
+@dataclass(slots=True)
+class StepCount:
+    """`k` is the number of the engine's last step; 0 before the first."""
+
+    k: int = 0
+
+
 class Engine(Protocol):
     """Steps all its vehicles together."""
 
     @property
-    def k(self) -> int:
-        """The number of the last step; 0 before the first."""
-        ...
-
+    def steps(self) -> StepCount: ...
     @property
     def believed(self) -> Believed: ...
     def blocks(self, lane: int) -> Blocks: ...
@@ -74,11 +78,28 @@ class Engine(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class Onboard:
+    """What the autopilot of one vehicle has of it: sensors, estimate, control loops, and what it
+    believes of its airframe.  The body, which is the truth, is not among it."""
+
+    steps: StepCount
+    sensed: Sensed
+    est: Estimated
+    flight: Flight
+    believed: Believed
+
+
+@dataclass(frozen=True, slots=True)
 class Seat:
     """A vehicle's place in an engine."""
 
     engine: Engine
     lane: int
+
+    @property
+    def onboard(self) -> Onboard:
+        blocks, engine = self.engine.blocks(self.lane), self.engine
+        return Onboard(engine.steps, blocks.sensed, blocks.est, blocks.flight, engine.believed)
 
 
 @kernel

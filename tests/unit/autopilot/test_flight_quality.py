@@ -49,7 +49,7 @@ class Hand:
 
     def situation(self) -> Situation:
         s = Situation(LIMITS)
-        s.time_ns = self.engine.k * 4_000_000
+        s.time_ns = self.engine.steps.k * 4_000_000
         s.pos_ned = (self.est.pos_n, self.est.pos_e, self.est.pos_d)
         return s
 
@@ -59,7 +59,7 @@ class Hand:
     def run(self, seconds: float, look: Callable[[], None] | None = None) -> None:
         for _ in range(round(seconds / DT_S)):
             self.engine.step()
-            if self.engine.k % 25 == 0:
+            if self.engine.steps.k % 25 == 0:
                 self.flight.strength_inv = 1.0 / self.body.strength
             if look is not None:
                 look()
