@@ -10,7 +10,7 @@ from gcs.gate.policy.parse import NameFault, parse_policy
 from gcs.gate.policy.policy import BridgeRules, Policy
 from gcs.gate.policy.zonespec import ZoneSpec
 from gcs.plan.errors import PlanError
-from gcs.plan.reader import read
+from gcs.plan.formats.reader import read
 from gcs.plan.zones import zone_specs
 from gcs.resources import policy_path
 

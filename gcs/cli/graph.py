@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from gcs.cli.options import AS_JSON, with_options
-from gcs.cli.topic_source import FROM, LAST, LINK, LOG, SECONDS, TO, Where
+from gcs.cli.topic.source import FROM, LAST, LINK, LOG, SECONDS, TO, Where
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 

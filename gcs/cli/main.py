@@ -31,9 +31,11 @@ class Entry(NamedTuple):
 
 COMMANDS: dict[str, dict[str, Entry]] = {
     "Fly": {
-        "demo": Entry("gcs.cli.demo:demo", "A whole flight in a minute, on a simulated vehicle."),
+        "demo": Entry(
+            "gcs.cli.demo.demo:demo", "A whole flight in a minute, on a simulated vehicle."
+        ),
         "fly": Entry("gcs.cli.fly:fly", "The keyboard ground station, or --plain lines."),
-        "bridge": Entry("gcs.cli.bridge:bridge", "MAVLink clients fly it through the gate."),
+        "bridge": Entry("gcs.cli.bridge.bridge:bridge", "MAVLink clients fly it through the gate."),
         "live": Entry("gcs.cli.live:live", "The flight in a viewer such as Foxglove, as it flies."),
     },
     "One command, then leave": {
@@ -58,20 +60,22 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     },
     "Files": {
         "mission": Entry(
-            "gcs.cli.mission:mission",
+            "gcs.cli.mission.mission:mission",
             "Mission files: check, show, upload, download, fly, set-current, clear.",
             more=(
-                "gcs.cli.mission_live:upload",
-                "gcs.cli.mission_live:download",
-                "gcs.cli.mission_live:fly",
-                "gcs.cli.mission_live:set_current",
-                "gcs.cli.mission_live:clear",
+                "gcs.cli.mission.live:upload",
+                "gcs.cli.mission.live:download",
+                "gcs.cli.mission.live:fly",
+                "gcs.cli.mission.live:set_current",
+                "gcs.cli.mission.live:clear",
             ),
         ),
         "key": Entry("gcs.cli.key:key", "Signing keys: new, show, install on a vehicle, remove."),
-        "topic": Entry("gcs.cli.topic:topic", "Messages live or recorded: list, echo, hz, plot."),
+        "topic": Entry(
+            "gcs.cli.topic.topic:topic", "Messages live or recorded: list, echo, hz, plot."
+        ),
         "graph": Entry("gcs.cli.graph:graph", "Who sends what to whom, with rates; SVG, DOT."),
-        "log": Entry("gcs.cli.log:log", "Recorded flights: info, layout, recover, replay."),
+        "log": Entry("gcs.cli.log.log:log", "Recorded flights: info, layout, recover, replay."),
         "fsa": Entry("gcs.cli.fsa:fsa", "The gate's state machine, printed from its table."),
     },
 }

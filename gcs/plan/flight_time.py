@@ -21,10 +21,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from gcs.frames import Vec3
-from gcs.plan import returns
 from gcs.plan.change_speed import climb_and_descent_m_s, leg_speed_m_s
-from gcs.plan.circles import circle_ends, entries
 from gcs.plan.commands import KINDS, Kind
+from gcs.plan.flown import returns
+from gcs.plan.flown.circles import circle_ends, entries
 from gcs.plan.item_places import ItemPlaces, PlaceUnknownError
 from gcs.plan.items import Flown, flown_as
 from gcs.plan.jumps import jump_target

@@ -15,12 +15,12 @@ from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.refusal import Code, Refusal
-from gcs.plan import returns
 from gcs.plan.battery_reach import battery_refusal, lasts_s
 from gcs.plan.flight_time import FlightTime, TimeWalk
+from gcs.plan.flown import returns
+from gcs.plan.flown.path import PathWalk
 from gcs.plan.legs import FlightPath, Ground, Leg, LegKind, ProblemKind, Region
 from gcs.plan.model import Plan
-from gcs.plan.path import PathWalk
 
 _CODES = {
     ProblemKind.NO_ORIGIN: Code.NO_ORIGIN,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gcs.plan.fence_items import fence_rows
+from gcs.plan.formats.fence_items import fence_rows
 from gcs.plan.model import Fence, RallyPoint
 from gcs.plan.wire import WireItem
 from gcs.wire.ids import Cmd, MavFrame, MissionType

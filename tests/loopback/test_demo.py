@@ -12,11 +12,11 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 from gcs import ipc
-from gcs.cli.demo_script import FAILSAFES_ON, MISSION, SCRIPT, Step
+from gcs.cli.demo.script import FAILSAFES_ON, MISSION, SCRIPT, Step
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
 from gcs.policy_file import load_policy
-from gcs.record.layout import PURPOSES, Purpose, layout_for
+from gcs.record.viewer.layout import PURPOSES, Purpose, layout_for
 from gcs.record.writer import Recorder
 from gcs.report import AttachmentItem, FsaItem, MetadataItem
 from gcs.resources import find

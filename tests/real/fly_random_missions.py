@@ -15,9 +15,9 @@ from dataclasses import replace
 
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.verifier import verifier_for
+from gcs.plan.formats.reader import read
 from gcs.plan.legs import Ground
 from gcs.plan.model import AutopilotName
-from gcs.plan.reader import read
 from gcs.plan.settings import USUAL
 from gcs.plan.verify import verify
 from tests.loopback.drawn_missions import Mission, mission_of, room_m, shape_of

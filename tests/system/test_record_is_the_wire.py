@@ -11,8 +11,8 @@ import pytest
 from rich.console import Console
 
 from gcs import ipc, resources
-from gcs.cli.demo import run_over
-from gcs.cli.demo_script import MISSION, POLICY
+from gcs.cli.demo.demo import run_over
+from gcs.cli.demo.script import MISSION, POLICY
 from gcs.operator.client import Polled, Readable, StationClient
 from gcs.record.info import GAP_NS
 from gcs.report import Direction

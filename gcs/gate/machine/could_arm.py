@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.memory import Memory
-from gcs.gate.machine.rows_requests_to_fly import arm
+from gcs.gate.machine.rows.requests_to_fly import arm
 from gcs.gate.machine.turn import Turn
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal

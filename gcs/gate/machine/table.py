@@ -1,7 +1,7 @@
 """The gate's state machine: every (state, event) pair, literally, with no cell missing.
 
 The machine runs from this table and from nothing else, and `gcs fsa` prints it.  The rows are
-written in the files `rows_*.py`, by subject, and are put together here.
+written in the files of `rows/`, by subject, and are put together here.
 
 VERIFYING ends within the tick that enters it, so only the verifier's answer can happen there.
 """
@@ -13,18 +13,18 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
-from gcs.gate.machine.cells import refuse_if_operator_lost
 from gcs.gate.machine.events import NEEDS_OPERATOR, Event
-from gcs.gate.machine.row import Row
-from gcs.gate.machine.rows_answers import ANSWER_ROWS
-from gcs.gate.machine.rows_failsafe import FAILSAFE_ROWS
-from gcs.gate.machine.rows_flight import FLIGHT_ROWS
-from gcs.gate.machine.rows_modes import MODE_ROWS
-from gcs.gate.machine.rows_position import POSITION_ROWS
-from gcs.gate.machine.rows_requests_to_fly import REQUEST_TO_FLY_ROWS
-from gcs.gate.machine.rows_requests_to_stop import REQUEST_TO_STOP_ROWS
-from gcs.gate.machine.rows_streams import STREAM_ROWS
-from gcs.gate.machine.rows_time import TIME_ROWS
+from gcs.gate.machine.rows.answers import ANSWER_ROWS
+from gcs.gate.machine.rows.cells import refuse_if_operator_lost
+from gcs.gate.machine.rows.failsafe import FAILSAFE_ROWS
+from gcs.gate.machine.rows.flight import FLIGHT_ROWS
+from gcs.gate.machine.rows.modes import MODE_ROWS
+from gcs.gate.machine.rows.position import POSITION_ROWS
+from gcs.gate.machine.rows.requests_to_fly import REQUEST_TO_FLY_ROWS
+from gcs.gate.machine.rows.requests_to_stop import REQUEST_TO_STOP_ROWS
+from gcs.gate.machine.rows.row import Row
+from gcs.gate.machine.rows.streams import STREAM_ROWS
+from gcs.gate.machine.rows.time import TIME_ROWS
 from gcs.gate.machine.rules import Cell
 from gcs.gate.states import State
 

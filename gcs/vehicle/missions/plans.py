@@ -13,9 +13,9 @@ from gcs.plan import commands
 from gcs.plan.commands import KINDS, Kind
 from gcs.plan.errors import Level as PlanLevel
 from gcs.plan.errors import PlanError
+from gcs.plan.formats.reader import read_in_steps
 from gcs.plan.lint import lint
 from gcs.plan.model import Geodetic, Plan
-from gcs.plan.reader import read_in_steps
 from gcs.plan.wire import WireItem, from_wire, to_wire
 from gcs.plan.wire_fence import fence_to_wire, has_heights, rally_to_wire
 from gcs.steps import Steps

@@ -14,7 +14,7 @@ from typing import Final, TypeAlias
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.plan.errors import PlanError
-from gcs.plan.fence_items import split_fence
+from gcs.plan.formats.fence_items import split_fence
 from gcs.plan.model import Circle, LatLon, Zone
 from gcs.plan.wire import WireItem, items_from_wire
 from gcs.protocol.effects import Address, Heard

@@ -12,10 +12,11 @@ from rich.console import Console
 
 from gcs import ipc
 from gcs.bridge.translate.explain import mode_explanation
-from gcs.cli import bridge_text, main
-from gcs.cli.bridge_lines import STATUS_EVERY_NS, BridgeLines
-from gcs.cli.bridge_page import BridgePage
-from gcs.cli.bridge_watch import watch
+from gcs.cli import main
+from gcs.cli.bridge import text as bridge_text
+from gcs.cli.bridge.lines import STATUS_EVERY_NS, BridgeLines
+from gcs.cli.bridge.page import BridgePage
+from gcs.cli.bridge.watch import watch
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from gcs.protocol.autopilot import ARDUPILOT, PX4

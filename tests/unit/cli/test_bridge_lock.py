@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.cli import bridge_lock
-from gcs.cli.bridge_lock import LockOptions, lock_vehicles
+from gcs.cli.bridge import lock as bridge_lock
+from gcs.cli.bridge.lock import LockOptions, lock_vehicles
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from gcs.protocol.lock_parameters import Locking

@@ -9,7 +9,8 @@ import pytest
 from rich.console import Console
 
 from gcs import ipc
-from gcs.cli import demo, demo_script
+from gcs.cli.demo import demo
+from gcs.cli.demo import script as demo_script
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from gcs.operator.line_parser import parse_line

@@ -43,7 +43,7 @@ def test_help_imports_nothing_heavy() -> None:
 @pytest.mark.slow
 def test_mavutil_is_never_loaded_by_a_command_line() -> None:
     code = (
-        "import sys, gcs.cli.fly, gcs.cli.demo, gcs.cli.oneshot_session, gcs.tui.app\n"
+        "import sys, gcs.cli.fly, gcs.cli.demo.demo, gcs.cli.oneshot_session, gcs.tui.app\n"
         "sys.exit('pymavlink.mavutil' in sys.modules)"
     )
     assert run_python(code).returncode == 0

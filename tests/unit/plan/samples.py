@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from gcs.plan.errors import PlanError
+from gcs.plan.formats.reader import read
 from gcs.plan.model import AutopilotName, Plan
-from gcs.plan.reader import read
 
 WHO: tuple[AutopilotName, ...] = ("px4", "ardupilot")
 HOME = (47.397742, 8.545594, 488.0)

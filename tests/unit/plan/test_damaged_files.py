@@ -11,14 +11,14 @@ import pytest
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.plan.compare import same_meaning
 from gcs.plan.errors import PlanError
+from gcs.plan.flown.path import flight_path
+from gcs.plan.formats.reader import SIZE_MAX, read
+from gcs.plan.formats.writer import write
 from gcs.plan.legs import Ground
 from gcs.plan.lint import lint
 from gcs.plan.model import AutopilotName, Plan
-from gcs.plan.path import flight_path
 from gcs.plan.place import georeference
-from gcs.plan.reader import SIZE_MAX, read
 from gcs.plan.wire import to_wire
-from gcs.plan.writer import write
 from gcs.plan.zones import zone_specs
 from tests.unit.plan.samples import LOCAL, WHO, box, survey, wpl
 

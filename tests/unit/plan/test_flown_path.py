@@ -15,14 +15,14 @@ from gcs.gate.airspace.verifier import verifier_for
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.refusal import Code, Refusal
-from gcs.plan.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.commands import KINDS, WITH_PLACE
-from gcs.plan.curves import Neighbours, Onward, pieces, splines
+from gcs.plan.flown.circles import circle_ends, entries, first_arc, way_on
+from gcs.plan.flown.curves import Neighbours, Onward, pieces, splines
+from gcs.plan.flown.path import flight_path
+from gcs.plan.flown.turns import blend, turning_places
 from gcs.plan.items import ROWS, Flown, flown_as
 from gcs.plan.legs import FlightPath, FlightSettings, Ground, LandingPlace, RegionKind
 from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
-from gcs.plan.path import flight_path
-from gcs.plan.turns import blend, turning_places
 from gcs.plan.verify import Verification, verify
 from gcs.wire.ids import Cmd
 from vehicle_sim.autopilot.tasks.spline import curve as flown_curve

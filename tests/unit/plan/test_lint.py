@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from gcs.plan.errors import Finding, Level
+from gcs.plan.formats.reader import read
 from gcs.plan.lint import lint
 from gcs.plan.model import AutopilotName, Geodetic
-from gcs.plan.reader import read
 from tests.sample_files import elsewhere
 from tests.unit.plan.samples import (
     LOCAL,

@@ -10,9 +10,9 @@ import pytest
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Origin, Projection
+from gcs.plan.flown.path import flight_path
 from gcs.plan.legs import FlightPath, Ground, LegKind, LoiterCircle, ProblemKind
 from gcs.plan.model import AutopilotName, Frame, Geographic, Item, Local, Plan
-from gcs.plan.path import flight_path
 
 ORIGIN = Origin(47.397742, 8.545594, 488.0)
 PROJECTION = Projection(ORIGIN, "px4")

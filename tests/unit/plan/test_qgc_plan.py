@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from gcs.plan.errors import PlanError
+from gcs.plan.formats.reader import read
 from gcs.plan.model import Circle, Frame, Geodetic, Geographic, LatLon, Plain, Polygon
-from gcs.plan.reader import read
 from tests.sample_files import elsewhere
 from tests.unit.plan.samples import box, plan_document, read_json, refused, simple, survey
 

@@ -16,9 +16,9 @@ from typing import Any, Final
 import pytest
 import shapely
 
+from gcs.plan.flown.path import flight_path
 from gcs.plan.legs import FlightPath, Ground
 from gcs.plan.model import AutopilotName, Frame, Item, Local, Plain, Plan
-from gcs.plan.path import flight_path
 from gcs.plan.settings import USUAL
 from tests.unit.plan.samples import WHO
 

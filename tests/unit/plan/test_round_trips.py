@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from gcs.plan.compare import same_meaning
 from gcs.plan.errors import PlanError
+from gcs.plan.formats.reader import read
+from gcs.plan.formats.wpl_writer import write_wpl
+from gcs.plan.formats.writer import write
 from gcs.plan.model import AutopilotName, Circle, Fence, Geodetic, Item, LatLon, Plan, Zone
-from gcs.plan.reader import read
 from gcs.plan.wire import from_wire, to_wire
-from gcs.plan.wpl_writer import write_wpl
-from gcs.plan.writer import write
 from tests.sample_files import elsewhere
 from tests.unit.plan.samples import LOCAL, WHO
 from tests.unit.plan.strategies import plans

@@ -7,10 +7,10 @@ import pytest
 from gcs.cli.main import run
 from gcs.exit_codes import ExitCode
 from gcs.plan.errors import PlanError
+from gcs.plan.formats.reader import read
+from gcs.plan.formats.writer import write
 from gcs.plan.lint import lint
 from gcs.plan.model import AutopilotName, Geodetic, Geographic, Plan
-from gcs.plan.reader import read
-from gcs.plan.writer import write
 from tests.sample_files import SAMPLES
 
 READ: dict[str, tuple[int, int, int]] = {

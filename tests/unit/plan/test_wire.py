@@ -10,8 +10,8 @@ import pytest
 
 from gcs.plan.compare import same_meaning
 from gcs.plan.errors import PlanError
+from gcs.plan.formats.reader import read
 from gcs.plan.model import AutopilotName, Geodetic, Plan
-from gcs.plan.reader import read
 from gcs.plan.wire import WireItem, from_wire, to_wire
 from tests.unit.plan.samples import box, plan_document, read_json, simple, survey, waypoint
 

@@ -7,9 +7,9 @@ import math
 import pytest
 
 from gcs.plan.errors import Level, PlanError
+from gcs.plan.formats.reader import read
+from gcs.plan.formats.wpl_writer import write_wpl
 from gcs.plan.model import AutopilotName, Circle, Frame, Geodetic, Geographic, LatLon, Polygon
-from gcs.plan.reader import read
-from gcs.plan.wpl_writer import write_wpl
 from tests.sample_files import elsewhere
 from tests.unit.plan.samples import read_text, wpl
 

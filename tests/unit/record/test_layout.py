@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from gcs.frames import Vec3
-from gcs.record.extent import extent_of, survey
-from gcs.record.layout import PURPOSES, Purpose, any_flight, layout, layout_for
-from gcs.record.panel_scene import cell_size, zoom
+from gcs.record.viewer.extent import extent_of, survey
+from gcs.record.viewer.layout import PURPOSES, Purpose, any_flight, layout, layout_for
+from gcs.record.viewer.panel_scene import cell_size, zoom
 from gcs.report import FenceItem, FenceShape, GeodeticItem, RecordItem
 from tests.sample_files import elsewhere
 from tests.unit.record.flights import MS, record

@@ -12,7 +12,7 @@ import pytest
 from mcap.opcode import Opcode
 from mcap.reader import make_reader
 
-from gcs.record.layout import ANY_FLIGHT, layout
+from gcs.record.viewer.layout import ANY_FLIGHT, layout
 from gcs.record.writer import Recorder
 from tests.unit.cli.command_line import Ended, gcs
 from tests.unit.record.flights import (

@@ -7,9 +7,9 @@ from gcs.exit_codes import ExitCode
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code
 from gcs.plan.errors import PlanError
+from gcs.plan.formats.writer import write
 from gcs.plan.item_messages import item_of
 from gcs.plan.wire import from_wire
-from gcs.plan.writer import write
 from gcs.protocol.mission import MissionDownload
 from gcs.session.effects import WriteFile
 from gcs.session.inputs import FileRead, FileWritten

@@ -14,7 +14,7 @@ from gcs.gate.effects import Level as LogLevel
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import Level, PlanError
-from gcs.plan.fence_items import split_fence
+from gcs.plan.formats.fence_items import split_fence
 from gcs.plan.lint_fence import lint_fence
 from gcs.plan.model import Plan
 from gcs.plan.wire import WireItem, items_from_wire

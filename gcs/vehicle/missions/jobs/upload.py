@@ -14,7 +14,7 @@ from gcs.bridge.setup_policy.mission_items import refused_items
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.errors import PlanError
-from gcs.plan.writer import write
+from gcs.plan.formats.writer import write
 from gcs.report import AttachmentItem
 from gcs.session.effects import ReadFile, Record
 from gcs.session.inputs import FileRead, FileWritten

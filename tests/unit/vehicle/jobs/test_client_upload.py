@@ -12,9 +12,9 @@ from gcs.gate.effects import OutcomeKind
 from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
+from gcs.plan.formats.wpl import read_wpl
 from gcs.plan.item_messages import message_of
 from gcs.plan.wire import WireItem
-from gcs.plan.wpl import read_wpl
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.steps import drained
 from gcs.vehicle.missions.jobs.clear import Clear

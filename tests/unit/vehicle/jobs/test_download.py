@@ -6,7 +6,7 @@ import pytest
 
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code
-from gcs.plan.reader import read
+from gcs.plan.formats.reader import read
 from gcs.session.effects import WriteFile
 from gcs.session.inputs import FileRead
 from gcs.vehicle.missions.jobs.download import Download

@@ -1,0 +1,1 @@
+"""`gcs bridge` and what it shows."""

@@ -1,0 +1,1 @@
+"""`gcs demo`: its script, what it shows and what it leaves."""

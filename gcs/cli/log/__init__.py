@@ -1,0 +1,1 @@
+"""`gcs log`: commands about records and other logs."""

@@ -1,0 +1,184 @@
+"""`gcs log`: recorded flights."""
+
+from __future__ import annotations
+
+import signal
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.log.audit import audit, sign
+from gcs.cli.log.check import check
+from gcs.cli.log.export import export_log
+from gcs.cli.log.files import cannot_write
+from gcs.cli.log.import_logs import import_log
+from gcs.cli.log.replay import replay
+from gcs.cli.log.report import report
+from gcs.cli.log.rewrite import compact, cut, merge, recover
+from gcs.cli.record_files import RECORD, reading_progress, told
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
+
+if TYPE_CHECKING:
+    from gcs.record.info import FlightInfo
+    from gcs.record.viewer.layout import Purpose
+
+_LOGS = Path("logs")
+
+
+@click.group()
+def log() -> None:
+    """Recorded flights: what is in them, how to look at them, how to save a broken one.
+
+    Example: gcs log info logs/20260101-120000_flight.mcap
+    """
+    # A Ctrl-C ends what is under way here in order: a bar on the screen, a file half written.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+for command in (
+    audit,
+    check,
+    compact,
+    cut,
+    export_log,
+    import_log,
+    merge,
+    recover,
+    replay,
+    report,
+    sign,
+):
+    log.add_command(command)
+
+
+@log.command()
+@click.argument("files", type=RECORD, nargs=-1, metavar="FILE...")
+@click.option("--last", is_flag=True, help="Only the newest of them; without FILE, of logs/*.mcap.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a file, one a line.")
+def info(files: tuple[Path, ...], last: bool, as_json: bool) -> None:
+    """What each FILE holds: duration, topics and rates, states, decisions, gaps.
+
+    Works on a file whose writer was killed, and says so.
+
+    Examples: gcs log info --last  |  gcs log info logs/*.mcap --json
+    """
+    import msgspec
+
+    from gcs.record.info import read_info
+
+    for number, file in enumerate(_chosen(files, last=last)):
+        with told(file), reading_progress(file, "reading") as progress:
+            flight = read_info(file, progress)
+        if as_json:
+            # JSON has no text but UTF-8; a file's name may be other.
+            name = flight.path.encode(errors="backslashreplace").decode()
+            click.echo(msgspec.json.encode(replace(flight, path=name)).decode())
+        else:
+            if number:
+                click.echo()
+            _print(flight)
+
+
+def _chosen(files: tuple[Path, ...], *, last: bool) -> tuple[Path, ...]:
+    """Raises UsageError where none is named, and ExitError where there is no last one."""
+    if not last:
+        if not files:
+            raise click.UsageError("Missing argument 'FILE...'; --last is the newest of logs/")
+        return files
+    found = files or tuple(_LOGS.glob("*.mcap"))
+    if not found:
+        raise ExitError(ExitCode.BAD_FILE, f"{_LOGS}/: no record in it", "name one, as FILE")
+    return (max(found, key=lambda file: file.stat().st_mtime_ns),)
+
+
+@log.command()
+@click.argument("file", type=RECORD, required=False)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Where to write the layout; without it, it is printed.",
+)
+@click.option(
+    "--for",
+    "purpose",
+    type=click.Choice(["one", "fleet", "lab"]),
+    default="one",
+    show_default=True,
+    help="One vehicle, all of them, or the lab's cage.",
+)
+def layout(file: Path | None, output: Path | None, purpose: Purpose) -> None:
+    """A layout for Foxglove or Lichtblick: camera, grid and map fitted to the flight in FILE.
+
+    Without FILE it is for any flight: the camera follows the vehicle.  Open the record, then import
+    the layout (Layouts > Import from file).
+
+    Example: gcs log layout logs/20260101-120000_flight.mcap -o flight-layout.json
+    """
+    import json
+
+    from gcs.record.viewer.layout import layout_for
+
+    if file is None:
+        made = layout_for(None, purpose)
+    else:
+        with told(file), reading_progress(file, "reading") as progress:
+            made = layout_for(file, purpose, progress)
+    text = json.dumps(made, indent=1) + "\n"
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    try:
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise cannot_write(output, error) from error
+    click.echo(f"{output}: import it in Foxglove (Layouts > Import from file)")
+
+
+def _print(flight: FlightInfo) -> None:
+    state = "complete" if flight.closed else "NOT CLOSED: its writer was killed or is still writing"
+    click.echo(f"{flight.path}: {flight.size / 1e6:.2f} MB, {state}")
+    if not flight.closed:
+        click.echo("  viewers refuse such a file: recover it first")
+        click.echo(f"  hint: gcs log recover {flight.path} -o whole.mcap")
+    if flight.damaged:
+        click.echo(f"  {flight.damaged} damaged records were skipped")
+    click.echo(f"{flight.messages} messages in {flight.seconds:.1f} s{_began(flight.start_ns)}")
+    if flight.topics:
+        width = max(len(topic.topic) for topic in flight.topics)
+        click.echo(f"\n{'topic':{width}}  {'messages':>8}  {'Hz':>7}  schema")
+        for topic in flight.topics:
+            rate = f"{topic.hz:7.1f}" if topic.hz else "      -"
+            click.echo(f"{topic.topic:{width}}  {topic.messages:8d}  {rate}  {topic.schema}")
+    if flight.states:
+        click.echo("\nstates")
+        for change in flight.states:
+            event = f"  ({change.event})" if change.event else ""
+            click.echo(f"  {change.t_s:8.2f} s  vehicle {change.vehicle}  {change.state}{event}")
+    if flight.decisions:
+        click.echo("\ndecisions")
+        for decision in flight.decisions:
+            why = "  ".join(part for part in (decision.code, decision.sentence) if part)
+            click.echo(
+                f"  {decision.t_s:8.2f} s  #{decision.request_id} {decision.word}: "
+                f"{decision.outcome}  {why}".rstrip()
+            )
+    for gap in flight.gaps:
+        click.echo(f"\ngap: nothing for {gap.seconds:.1f} s after {gap.t_s:.1f} s")
+    if flight.attachments:
+        click.echo(f"\nattachments: {', '.join(flight.attachments)}")
+
+
+def _began(start_ns: int | None) -> str:
+    from datetime import UTC, datetime
+
+    if start_ns is None:
+        return ""
+    try:
+        began = datetime.fromtimestamp(start_ns / 1e9, UTC)
+    except (OverflowError, ValueError, OSError):
+        return ""
+    return f", from {began:%Y-%m-%d %H:%M:%S} UTC"

@@ -1,0 +1,1 @@
+"""`gcs mission`: commands about mission files."""

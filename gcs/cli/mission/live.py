@@ -1,0 +1,202 @@
+"""The `gcs mission` commands that need a vehicle: upload, download, fly, set-current, clear."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypedDict, Unpack
+
+import click
+
+from gcs.cli.options import (
+    AS_JSON,
+    LINK,
+    LOG_DIR,
+    POLICY,
+    SIGN_KEY,
+    TAKE,
+    TIMEOUT,
+    UTF8,
+    VEHICLE,
+    Seconds,
+    asked_for,
+    station_config,
+    with_options,
+)
+from gcs.exit_codes import ExitCode
+from gcs.operator.errors import ExitError
+
+if TYPE_CHECKING:
+    from gcs.ipc import Ask
+
+EXITS = (
+    "Exit codes: 0 done, 3 no vehicle, 4 bad file, 5 refused by the vehicle, 6 refused by the "
+    "gate, 8 accepted but not completed, 130 interrupted."
+)
+WAIT = click.Option(
+    ["--wait"],
+    type=Seconds(),
+    default=1800.0,
+    show_default=True,
+    metavar="S",
+    help="Seconds to wait for the effect.",
+)
+LINK_OPTIONS = (LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
+
+
+class ToVehicle(TypedDict):
+    """What `LINK_OPTIONS` come to."""
+
+    links: tuple[str, ...]
+    vehicle: int | None
+    policy: str
+    sign_key: str
+    log_dir: str
+    timeout: float
+    wait: float
+    as_json: bool
+    take: bool
+
+
+@click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
+@click.argument("file")
+@with_options(*LINK_OPTIONS)
+def upload(
+    file: str,
+    **to: Unpack[ToVehicle],
+) -> None:
+    """Verify a mission file, send it to the vehicle, read it back and compare."""
+    from gcs.ipc import Ask
+
+    requests = (Ask(0, "mission_upload", path=_readable(file)),)
+    _run(requests, **to)
+
+
+@click.command(epilog=f"Example: gcs mission download on_board.plan\n\n{EXITS}")
+@click.argument("file", required=False)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, writable=True),
+    help="The same as FILE.",
+)
+@click.option("--force", is_flag=True, help="Write over a file that exists.")
+@with_options(*LINK_OPTIONS)
+def download(
+    file: str | None,
+    output: str | None,
+    force: bool,
+    **to: Unpack[ToVehicle],
+) -> None:
+    """Read the mission on board into FILE, mission.plan if none is named.
+
+    The suffix chooses the format: .plan, .waypoints or .txt.
+    """
+    from gcs.ipc import Ask
+
+    if file is not None and output is not None:
+        raise ExitError(ExitCode.USAGE, f"one file, not two: {file} and {output}")
+    path = file or output or "mission.plan"
+    _check_output(path, force)
+    requests = (Ask(0, "mission_download", path=path),)
+    _run(requests, **to)
+
+
+@click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
+@click.argument("file")
+@with_options(*LINK_OPTIONS)
+def fly(
+    file: str,
+    **to: Unpack[ToVehicle],
+) -> None:
+    """Upload a mission file, then start it and wait for its end."""
+    from gcs.ipc import Ask
+
+    requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
+    _run(requests, **to)
+
+
+@click.command("set-current", epilog=f"Example: gcs mission set-current 3\n\n{EXITS}")
+@click.argument("item", type=click.IntRange(min=0))
+@with_options(*LINK_OPTIONS)
+def set_current(
+    item: int,
+    **to: Unpack[ToVehicle],
+) -> None:
+    """Let the next start of the mission begin at ITEM, as MAVLink counts: 0 is the first item of a
+    PX4, 1 that of an ArduPilot.
+
+    In the air only, and while no mission is flown; the start itself verifies the way there.
+    """
+    from gcs.ipc import Ask
+
+    requests = (Ask(0, "mission_set_current", item=item),)
+    _run(requests, **to)
+
+
+@click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
+@with_options(*LINK_OPTIONS)
+def clear(
+    **to: Unpack[ToVehicle],
+) -> None:
+    """Remove the mission on board."""
+    from gcs.ipc import Ask
+
+    _run((Ask(0, "mission_clear"),), **to)
+
+
+def _check_output(output: str, force: bool) -> None:
+    """Whether a mission may be written there, checked before any station is started."""
+    from pathlib import Path
+
+    from gcs.plan.formats.writer import SUFFIXES
+
+    path = Path(output)
+    if path.suffix.lower() not in SUFFIXES:
+        raise ExitError(
+            ExitCode.USAGE,
+            f"{output}: the suffix names no format that can be written",
+            f"one of: {', '.join(SUFFIXES)}",
+        )
+    if path.exists() and not force:
+        raise ExitError(ExitCode.USAGE, f"{output}: exists already", "--force writes over it")
+
+
+def _readable(file: str) -> str:
+    """Path of the file as typed, or of the shipped mission of that name.
+
+    It is read here first, so that a file that is no plan is refused before any station is
+    started.  Raises ExitError with BAD_FILE.
+    """
+    from gcs import resources
+    from gcs.cli.mission.mission import read_plan
+
+    read_plan(file, None)
+    return str(resources.find(file))
+
+
+def _run(requests: tuple[Ask, ...], **to: Unpack[ToVehicle]) -> None:
+    from gcs.cli import oneshot_session
+    from gcs.operator.request_words import SendRequests, label
+
+    for request in requests:
+        UTF8.convert(request.path, None, None)
+    setup = station_config(
+        to["links"],
+        to["policy"],
+        to["log_dir"],
+        name="mission",
+        timeout_s=to["timeout"],
+        vehicle=to["vehicle"],
+        sign_key=to["sign_key"],
+    )
+    what = label(requests[0])
+    how = oneshot_session.OneShotConfig(
+        to["timeout"],
+        to["wait"],
+        to["as_json"],
+        what,
+        take=to["take"],
+        wanted=asked_for(),
+    )
+    task = oneshot_session.sending(SendRequests(requests), to["wait"])
+    code = oneshot_session.run(setup, how, task)
+    click.get_current_context().exit(code)

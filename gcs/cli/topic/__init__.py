@@ -1,0 +1,1 @@
+"""`gcs topic`: messages, live or recorded."""

@@ -1,0 +1,1 @@
+"""The path of a plan as the vehicle flies it: legs, turns, curves, circles, returns."""

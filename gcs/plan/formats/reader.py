@@ -1,0 +1,50 @@
+"""Any mission file -> Plan; what is in the file decides which format it is."""
+
+from __future__ import annotations
+
+import re
+
+from gcs.plan.errors import PlanError
+from gcs.plan.formats.local_toml import read_local
+from gcs.plan.formats.qgc_plan import read_plan
+from gcs.plan.formats.wpl import read_wpl
+from gcs.plan.model import AutopilotName, Plan
+from gcs.steps import Steps, drained
+
+SUPPORTED = "a QGroundControl .plan, a QGC WPL 110 table, or a mission in TOML"
+_TOML_START = re.compile(rb"\s*(?:#[^\n]*\n\s*)*\[{0,2}[A-Za-z_]+[\]\s]*(?:=|\n|$)")
+SIZE_MAX = 16 * 1024 * 1024
+
+
+def read(path_text: str, data: bytes, autopilot: AutopilotName | None = None) -> Plan:
+    """As `read_in_steps`, at once."""
+    return drained(read_in_steps(path_text, data, autopilot))
+
+
+def read_in_steps(
+    path_text: str, data: bytes, autopilot: AutopilotName | None = None
+) -> Steps[Plan]:
+    """The plan in `data`, the bytes of the file that users know as `path_text`.
+
+    `autopilot` is the vehicle's, where it is known: whether a waypoint table begins with home
+    depends on it.  Raises PlanError, and nothing else, whatever the bytes are.
+    """
+    name = re.split(r"[/\\]", path_text)[-1].rpartition(".")[0] or path_text
+    if len(data) > SIZE_MAX:
+        what = f"has {len(data)} bytes"
+        raise PlanError(path_text, "", "file", what, f"at most {SIZE_MAX}")
+    start = data.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if start.startswith(b"{"):
+        return (yield from read_plan(path_text, data, name))
+    if path_text.lower().endswith(".toml"):
+        return read_local(path_text, data, name)
+    if re.match(rb"(?:#[^\n]*\n\s*)*QGC\s", start):
+        return (yield from read_wpl(path_text, data, name, autopilot))
+    if path_text.lower().endswith(".plan"):
+        return (yield from read_plan(path_text, data, name))
+    if path_text.lower().endswith((".waypoints", ".wpl")):
+        return (yield from read_wpl(path_text, data, name, autopilot))
+    if _TOML_START.match(start):
+        return read_local(path_text, data, name)
+    what = "is empty" if not start else "is none of the mission files that can be read"
+    raise PlanError(path_text, "1", "file", what, SUPPORTED)

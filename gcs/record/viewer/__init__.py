@@ -1,0 +1,1 @@
+"""What a viewer shows of a record: layout, panels, how large the flight is."""
