@@ -168,10 +168,12 @@ class GatePort:
             telemetry.origin,
             fence_on=self._fence_on,
         )
-        fence = announcements.fence(verifier.zones, telemetry.origin, self.policy)
+        fence: list[Effect] = []
+        if self._shown:
+            fence = announcements.fence(verifier.zones, telemetry.origin, self.policy)
         return [
             GateInput(inputs.VerifierChanged(verifier)),
-            *(fence if self._shown else ()),
+            *fence,
             *([] if telemetry.pos_ned is None else self._breached(telemetry.pos_ned)),
         ]
 

@@ -68,7 +68,11 @@ def message(name: str, **fields: float) -> ipc.MessageEvent:
 
 
 def test_nothing_of_it_is_loaded_by_the_import_alone() -> None:
-    names = {"connect": "gcs.operator.connect", "Station": "gcs.operator.station"}
+    names = {
+        "columns": "gcs.logfile.columns.read",
+        "connect": "gcs.operator.connect",
+        "Station": "gcs.operator.station",
+    }
     for name in gcs.__all__:
         home = names.get(name, "gcs.operator." + ("station" if name == "Operation" else "failures"))
         assert getattr(gcs, name).__module__ == home
