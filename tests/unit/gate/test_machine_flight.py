@@ -425,7 +425,7 @@ class TestPictureAndMission:
     def test_a_goal_that_takes_too_long_is_held_and_timed_out(self) -> None:
         script = in_state(State.HOVERING)
         requested = script.ask(GoTo((0.0, 3.0, -UP)))
-        script.wait(10.2)
+        script.wait(20.2)
         assert script.outcome(requested).kind is OutcomeKind.TIMED_OUT
         assert script.gate.state is State.HOLDING
         assert CommandKind.HOLD in script.commands()
