@@ -134,18 +134,17 @@ def paced(
         fits_h_m_s, fits_v_m_s = crawl * level.wanted_m_s, crawl * vertical.wanted_m_s
     level_m_s, ahead_m = level.asked(fits_h_m_s, last_m)
     vertical_m_s, up_or_down_m = vertical.asked(fits_v_m_s, last_m)
-    behind_ned = (
-        pos_ned[0] + n * min(0.0, ahead_m),
-        pos_ned[1] + e * min(0.0, ahead_m),
-        pos_ned[2] + sign * min(0.0, up_or_down_m),
-    )
-    if behind_ned != pos_ned and not is_free(pos_ned, behind_ned):
-        ahead_m, up_or_down_m = max(0.0, ahead_m), max(0.0, up_or_down_m)
-    target_ned = (
-        goal_ned[0] if ahead_m >= away_m else pos_ned[0] + n * ahead_m,
-        goal_ned[1] if ahead_m >= away_m else pos_ned[1] + e * ahead_m,
-        goal_ned[2] if up_or_down_m >= abs(down) else pos_ned[2] + sign * up_or_down_m,
-    )
+
+    def so_far_ahead(ahead_m: float, up_or_down_m: float) -> Vec3:
+        return (
+            goal_ned[0] if ahead_m >= away_m else pos_ned[0] + n * ahead_m,
+            goal_ned[1] if ahead_m >= away_m else pos_ned[1] + e * ahead_m,
+            goal_ned[2] if up_or_down_m >= abs(down) else pos_ned[2] + sign * up_or_down_m,
+        )
+
+    target_ned = so_far_ahead(ahead_m, up_or_down_m)
+    if min(ahead_m, up_or_down_m) < 0.0 and not is_free(pos_ned, target_ned):
+        target_ned = so_far_ahead(max(0.0, ahead_m), max(0.0, up_or_down_m))
     return Paced(goal_ned, target_ned, (n * level_m_s, e * level_m_s, sign * vertical_m_s))
 
 

@@ -21,9 +21,9 @@ from gcs.gate.machine.memory import Goal, Task
 from gcs.gate.machine.progress import within_arrival
 from gcs.gate.machine.rules import Action, End
 from gcs.gate.machine.turn import Turn
-from gcs.gate.refusal import Code
+from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo, SwitchFence
-from gcs.gate.states import Control, LandedState, State
+from gcs.gate.states import Control, FlightMode, LandedState, State
 
 TICK_S = 0.05
 """The time from one tick to the next: the session ticks at 20 Hz."""
@@ -122,8 +122,12 @@ def _take_control_on_way_back(turn: Turn) -> None:
 
 def _take_control_at_top(turn: Turn) -> None:
     """As `_take_control`, with the top of the climb as setpoint: the vehicle may end its climb
-    below it."""
-    _take_control_at(turn, turn.memory.top_ned)
+    below it.  An ArduPilot shows its hold mode there only where somebody else has put it into it:
+    then a goal that has waited for the top is not flown."""
+    memory = turn.memory
+    if memory.autopilot == "ardupilot" and memory.mode is FlightMode.HOLD:
+        turn.refuse_pending(Refusal(Code.MODE_CHANGED, "somebody else has stopped the climb"))
+    _take_control_at(turn, memory.top_ned)
 
 
 def _take_control_at(turn: Turn, hold_ned: Vec3) -> None:

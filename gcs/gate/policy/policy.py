@@ -381,6 +381,6 @@ def _slowest(every: Sequence[Pace]) -> Pace:
         # Which autopilot follows faster: to it a position is nearer at the same speed.
         follow_per_s=max(p.follow_per_s for p in every),
         follow_m_s2=max(p.follow_m_s2 for p in every),
-        past_m=max(p.past_m for p in every),
+        past_m=0.0 if any(p.past_m == 0.0 for p in every) else max(p.past_m for p in every),
         back_m_s=min(p.back_m_s for p in every),
     )

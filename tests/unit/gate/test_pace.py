@@ -120,6 +120,23 @@ def test_where_there_is_no_room_past_the_goal_it_is_asked_for_less_than_the_law(
         assert sent.target_ned == pytest.approx(at(19 + asked_m_s / 0.95, 0, 20))
 
 
+def test_what_is_sent_back_and_down_at_once_is_free_as_a_whole() -> None:
+    """A roof of 10 m stands behind it: at its own height it may be asked to fly back, lower not."""
+    roof = Zone(
+        "roof",
+        False,
+        Polygon(((-50.0, -50.0), (50.0, -50.0), (50.0, 0.0), (-50.0, 0.0))),
+        0.0,
+        10.0,
+    )
+    yard = Zone(
+        "yard", True, Polygon(((-50.0, -50.0), (50.0, -50.0), (50.0, 7.5), (-50.0, 7.5))), 0.0, 50.0
+    )
+    verifier = Verifier(DEFAULT, (yard, roof), "px4", HOME, origin_known=False)
+    sent = verifier.paced((4.0, 0.0, -5.0), (2.05, 0.0, -10.25), (2.5, 0.0, 0.0))
+    assert sent.target_ned[0] >= 2.05
+
+
 def test_to_a_goal_without_room_past_it_it_is_flown_slower() -> None:
     """5 m and 2 m before the fence are 7 m."""
     for goal_m, asked_m_s in ((142.9, 12.0), (143.1, 10.0)):

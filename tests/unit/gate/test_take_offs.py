@@ -193,6 +193,18 @@ class TestTheEndOfTheClimb:
         assert (script.gate.active_goal_ned == flown_ned) is (refused is None)
         assert (ended(script, request_id) == "superseded SUPERSEDED") is (refused is None)
 
+    def test_it_is_refused_where_a_pilot_brakes_near_the_top(self) -> None:
+        script = Script(default_policy(retarget="replace"), "ardupilot")
+        take_off(script, 10.0)
+        script.land_state(LandedState.IN_AIR)
+        script.at(0.0, 0.0, 9.5, (0.0, 0.0, 1.0))
+        goal = script.goto(3.0, 0.0, 10.0)
+        script.v_ned = (0.0, 0.0, 0.0)
+        script.at(0.0, 0.0, 9.6)
+        script.heartbeat(FlightMode.HOLD)
+        script.wait(0.2)
+        assert script.refusal(goal) is Code.MODE_CHANGED
+
     def test_it_is_refused_where_the_climb_is_stopped(self) -> None:
         script = Script(default_policy(retarget="replace"), "ardupilot")
         take_off(script, 10.0)
