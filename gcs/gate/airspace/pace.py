@@ -5,7 +5,7 @@ takes longer from a higher speed than slowing down for the goal does.  So what i
 is a position on the way to the goal, just so far ahead of the vehicle that the autopilot flies
 towards it at the speed of this law, and slows down for it by itself where no other one follows.
 What has held a PX4 against its drag is left in its integrator when it has slowed down: asked for no
-speed it went on at 1.3 m/s for 2 s, and after 10 m/s its hold took 2.4 to 3.5 m from under 1 m/s.
+speed it went on at 1.3 m/s for 2 s, and after 10 m/s its hold took 2.3 to 3.5 m from under 1 m/s.
 The integrator takes 4.5 s to follow.  So where there is no room past the goal it is flown no faster
 than `near`, and asked to fly back, no faster than it flies on and by up to `back`, until it does
 slow down.
@@ -22,8 +22,8 @@ The speed is the least of
 `react` and `a_brake` are the policy's `[braking]`, `late` is how old the reported position is, and
 `lag` is how much later than asked the vehicle slows down, what its integrator carries on included.
 Where there is room past the goal, one that is faster than the least of these, but not than its stop
-fits from, slows down by itself: recorded on PX4 1.14.3, legs of 58 m, 7.3 s to within 1 m and 2.1 m
-past the goal, where the bare goal takes 7.3 s and is passed by 2.0 to 2.6 m.
+fits from, slows down by itself: recorded on PX4 1.14.3, legs of 58 m, 7.3 to 7.5 s to within 1 m
+and 2 m past the goal, where the bare goal takes 7.1 to 7.4 s and is passed by 2.0 to 2.7 m.
 """
 
 from __future__ import annotations
