@@ -66,7 +66,7 @@ class Truth:
 
 def allowed(north_m: float, east_m: float, up_m: float) -> bool:
     """Inside the yard and outside the mast of yard.toml."""
-    in_yard = abs(north_m) <= 60.0 and abs(east_m) <= 60.0 and up_m <= 40.0
+    in_yard = abs(north_m) <= 60.0 and abs(east_m) <= 60.0 and up_m <= 60.0
     return in_yard and not (15.0 <= east_m <= 25.0 and abs(north_m) <= 10.0)
 
 

@@ -236,22 +236,39 @@ class Peer:
         return far_m
 
     def attitudes(self) -> None:
-        """Leaning at the fence of the yard, 20 m up, by 5 degrees; and back."""
+        """Leaning at the fence of the yard, 28 m up, by 5 degrees; and back."""
         hover = Param(self.system).get_param_float("MPC_THR_HOVER")
-        self.done("goto", self.goto, 0.0, 0.0, 20.0)
-        self.come_to(0.0, 0.0, 20.0)
         control = Offboard(self.system)
-        control.set_attitude(Attitude(0.0, 0.0, 0.0, hover))
+
+        def lean(pitch_deg: float) -> None:
+            """Keeps the height by the thrust: a steady one sinks to where the gate refuses it."""
+            under_m = 28.0 - self.here()[2]
+            sinks_m_s = self.telemetry.velocity_ned().down_m_s
+            thrust = hover + 0.02 * under_m + 0.05 * sinks_m_s
+            control.set_attitude(Attitude(0.0, pitch_deg, 0.0, thrust))
+            time.sleep(0.05)
+
+        def north_m_s() -> float:
+            return float(self.telemetry.velocity_ned().north_m_s)
+
+        def leans_until(pitch_deg: float, condition: Callable[[], bool], what: str) -> None:
+            def leans() -> bool:
+                lean(pitch_deg)
+                return condition()
+
+            until(leans, what)
+
+        self.done("goto", self.goto, 0.0, 0.0, 28.0)
+        self.come_to(0.0, 0.0, 28.0)
+        lean(0.0)
         self.done("attitude", control.start)
-        control.set_attitude(Attitude(0.0, -5.0, 0.0, hover))
-        until(lambda: self.telemetry.velocity_ned().north_m_s > 1.0, "leans to the north")
+        leans_until(-5.0, lambda: north_m_s() > 1.0, "leans to the north")
         print("flies where it leans", flush=True)
-        until(lambda: self.here()[0] > 15.0, "15 m north")
-        until(lambda: abs(self.telemetry.velocity_ned().north_m_s) < 0.3, "held")
+        leans_until(-5.0, lambda: self.here()[0] > 15.0, "15 m north")
+        leans_until(-5.0, lambda: abs(north_m_s()) < 0.3, "held")
         held_m = self.here()[0]
         print(f"held {held_m:.0f} m north", flush=True)
-        control.set_attitude(Attitude(0.0, 5.0, 0.0, hover))
-        until(lambda: self.here()[0] < held_m - 5.0, "leans back")
+        leans_until(5.0, lambda: self.here()[0] < held_m - 5.0, "leans back")
         print("flies back", flush=True)
         self.done("offboard ended", control.stop)
         time.sleep(4.0)
