@@ -5,8 +5,9 @@ python -m tests.oracles --write    keep what is so now
 python -m tests.oracles --record   make the records that are missing: where behaviour changes by
                                    intention, those that differ are removed first
 
-What is kept: of each flight of `flights.py` the frames both ways, the record and what was told; of
-each record in `records/` what an audit finds; the gate's table; every command's help.
+What is kept: of each flight of `flights.py` the frames both ways, the record, what was told and the
+vehicle's state at the end; of each record in `records/` what an audit finds; the gate's table, and
+what the explorer meets from its beginnings; every command's help; the tables of docs/json.md.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ import hashlib
 import json
 import sys
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from pathlib import Path
+from typing import Final
 
 import pytest
 from click import Command, Context, Group
@@ -29,10 +32,16 @@ from tests.loopback.flight import PERSONALITIES, Flight
 from tests.loopback.observed import START_NS
 from tests.loopback.recorded_flights import flights_recorded
 from tests.oracles.flights import SCRIPTS
+from tests.proof.explorer import Explorer
+from tests.proof.walk import Begun, Walk
+from tests.unit import json_page
+from tests.unit.gate.explored import WORLDS
 from vehicle_sim.cli import main as sim_command
 
 KEPT = Path(__file__).with_name("hashes.json")
 RECORDS = Path(__file__).with_name("records")
+SITUATIONS: Final = 4_000
+"""So many of them have had their turn when an exploration ends here; `make thorough` does all."""
 
 
 def digest(parts: Iterable[object]) -> str:
@@ -55,6 +64,7 @@ def flights() -> Iterator[tuple[str, str]]:
             yield f"{of}: received", digest((each.time_ns, each.data) for each in flight.received)
             yield f"{of}: record", digest(tuple(each) for each in messages)
             yield f"{of}: told", digest(flight.told())
+            yield f"{of}: vehicle", digest([flight.vehicle.state_bytes()])
 
 
 def record() -> None:
@@ -80,6 +90,24 @@ def audits() -> Iterator[tuple[str, str]]:
         yield f"audit {path.stem}", f"{'good' if result.good else 'differs'}, {len(messages)}"
 
 
+def explored() -> Iterator[tuple[str, str]]:
+    """The situations that are nearest to the beginnings, and the edges between them."""
+    for name, world in WORLDS.items():
+        explorer = Explorer(world)
+        begun = Begun.from_starts(explorer.starts(TABLE))
+        walk = Walk(explorer.letters(TABLE), explorer.judge, begun)
+        met = walk.run(SITUATIONS)
+        cells = sorted(
+            (state.name, event.name, at) for (state, event), at in walk.first_met.items()
+        )
+        combinations = sorted(map(repr, met.combinations))
+        fault = "none" if met.fault is None else str(met.fault)
+        yield (
+            f"explorer {name}",
+            digest([met.situations, met.edges, fault, *cells, *combinations]),
+        )
+
+
 def helps() -> Iterator[tuple[str, str]]:
     for root, name in ((gcs_command, "gcs"), (sim_command, "vehicle-sim")):
         yield "help " + name, digest(_help(root, Context(root, info_name=name)))
@@ -96,7 +124,9 @@ def _help(command: Command, context: Context) -> Iterator[str]:
 
 def found() -> dict[str, str]:
     table = digest(sorted(map(repr, TABLE.items())))
-    return {"gate table": table, **dict(helps()), **dict(audits()), **dict(flights())}
+    page = {"JSON page": digest([json_page.tables()])}
+    lines = (helps(), explored(), audits(), flights())
+    return {"gate table": table, **page, **dict(chain.from_iterable(lines))}
 
 
 def main(words: list[str]) -> int:
