@@ -26,7 +26,7 @@ URLS = {
     "mavsdk3": "udpout://{}",
 }
 WORDS = {
-    "pymavlink": ("fly", "offboard", "return_blocked", "escape", "land"),
+    "pymavlink": ("fly", "offboard", "escape", "land"),
     "mavproxy": ("fly", "escape", "land"),
     "mavsdk": ("fly", "offboard", "orbit", "escape", "land"),
     "mavsdk3": ("fly", "offboard", "escape", "land"),
@@ -37,13 +37,8 @@ FLOWN = {
     "mavsdk": ("^all parameters", "^mission True", "^took off", "^goto", "^flies the mission"),
     "mavsdk3": ("^all parameters", "^mission True", "^arm", "^goto", "^flies the mission"),
 }
-REFUSED = {
-    "pymavlink": 21,
-    "mavproxy": 10,
-    "mavsdk": 9,
-    "mavsdk3": 8,
-}
-"""So many attempts of the script to leave the fence are refused to its face, at least."""
+REFUSED = 2
+"""So many attempts of each script to leave the fence are refused to its face, at least."""
 
 
 @pytest.mark.parametrize("personality", ["px4", "ardupilot"])
@@ -55,26 +50,13 @@ def test_it_flies_and_cannot_leave(client: str, personality: Personality, tmp_pa
     print(*lines, sep="\n")
     in_order(lines, *FLOWN[client])
     if "orbit" in WORDS[client]:
-        in_order(lines, "^orbit: accepted", "^orbit flown True", "^orbit over the mast: refused")
+        in_order(lines, "^orbit: accepted", "^orbit flown True")
     refused = [line for line in lines if " refused " in line or "NIED" in line or "REJEC" in line]
-    assert len(refused) >= REFUSED[client]
+    assert len(refused) >= REFUSED
     assert flight.refusals()
     assert len(flight.truth.places) > 50 * 60
     # It did fly: each script goes to 12 m north, and comes there within 1.2 m.
     assert max(north_m for north_m, _, _ in flight.truth.places) > 12.0 - 1.2
-    assert flight.truth.outside() == []
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
-def test_qgroundcontrols_start_of_a_mission(personality: Personality, tmp_path: Path) -> None:
-    """Its order of messages, sent by pymavlink."""
-    with bridged(personality, tmp_path) as flight:
-        url = URLS["pymavlink"].format(flight.clients[0])
-        words = ("start_as_qgroundcontrol", "land")
-        lines = end_peer(start_peer("pymavlink", url, flight, *words))
-    print(*lines, sep="\n")
-    in_order(lines, "^shows", "^armed within 3 s", "^mission item 2", "^landed and disarmed")
     assert flight.truth.outside() == []
 
 

@@ -1,4 +1,5 @@
-"""Setpoints in every frame and mask, as MAVSDK, DroneKit, MAVProxy and QGroundControl send them.
+"""Setpoints and single items in every frame and mask, as MAVSDK, DroneKit, MAVProxy and
+QGroundControl send them.
 
 Which frames and masks an autopilot flies: `mavlink_receiver.cpp` of PX4 1.14 and `GCS_Mavlink.cpp`
 of ArduCopter 4.5 to 4.7, read for these tests.
@@ -7,18 +8,14 @@ of ArduCopter 4.5 to 4.7, read for these tests.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
-from gcs.bridge.translate.meaning import Sample, Words
-from gcs.bridge.translate.translate import meaning_of
 from gcs.gate.states import State
-from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.wire.messages import Message
-from tests.unit.bridge.vehicles import NAN, flying, goal, refusal, sent, words
-
-BOTH = pytest.mark.parametrize("autopilot", [PX4, ARDUPILOT], ids=lambda a: a.name)
+from tests.unit.bridge.rows import BOTH, A, P, Row, air, hold, table
+from tests.unit.bridge.vehicles import NAN, sent
 
 LOCAL_NED, LOCAL_OFFSET, BODY, BODY_OFFSET = 1, 7, 8, 9
 GLOBAL, GLOBAL_INT, RELATIVE, RELATIVE_INT, TERRAIN, TERRAIN_INT = 0, 5, 3, 6, 10, 11
@@ -32,14 +29,21 @@ POSITION_ACCELERATION = 0b110000111000
 ALL_THREE = 0b110000000000
 YAW_GIVEN, YAW_RATE_GIVEN = ~0b010000000000, ~0b100000000000
 FORCE = 0b001000000000
-EVERYTHING_IGNORED = 0b110111111111
+NOTHING = 0b110111111111
+BAD = (NAN, math.inf, -math.inf)
+NANS = (NAN, NAN, NAN)
+Triple = tuple[float, float, float]
+ZERO: Triple = (0.0, 0.0, 0.0)
+HERE, NORTHWARD, LITTLE = (4, 5, -20), (1, 0, 0), (0.5, 0, 0)
+LAT, LON = 47.398742, 8.545594
+"""0.001 degrees north of the origin of `flying`."""
 
 
 def local(
     mask: int,
-    place: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    acceleration: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    place: Triple = ZERO,
+    velocity: Triple = ZERO,
+    acceleration: Triple = ZERO,
     yaw: float = 0.0,
     yaw_rate: float = 0.0,
     frame: int = LOCAL_NED,
@@ -52,247 +56,235 @@ def local(
 
 
 def on_the_map(
-    mask: int,
-    lat_deg: float = 0.0,
-    lon_deg: float = 0.0,
-    alt_m: float = 0.0,
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    frame: int = RELATIVE_INT,
+    mask: int, place: Triple = ZERO, velocity: Triple = ZERO, frame: int = RELATIVE_INT
 ) -> Message:
-    lat, lon = round(lat_deg * 1e7), round(lon_deg * 1e7)
+    """Degrees, degrees, metres."""
+    lat, lon = round(place[0] * 1e7), round(place[1] * 1e7)
     return sent(
         mavlink.MAVLink_set_position_target_global_int_message(
-            0, 1, 1, frame, mask, lat, lon, alt_m, *velocity, 0.0, 0.0, 0.0, 0.0, 0.0
+            0, 1, 1, frame, mask, lat, lon, place[2], *velocity, *[0.0] * 5
         )
     )
 
 
-def sample(meaning: object) -> Sample:
-    if isinstance(meaning, Words):
-        assert meaning.if_repeated is not None
-        return meaning.if_repeated
-    assert isinstance(meaning, Sample), meaning
-    return meaning
+def item(
+    current: int, frame: int = 3, lat: float = LAT, alt: float = 5.0, command: int = 16
+) -> Message:
+    """DroneKit's `simple_goto` and MAVProxy's `guided`: NAV_WAYPOINT, `current` 2."""
+    head = (1, 1, 0, frame, command, current, 0, 0, 0, 0, 0)
+    return sent(mavlink.MAVLink_mission_item_message(*head, lat, LON, alt))
 
 
-# ------------------------------------------------------------------------------- local frame
-
-
-@BOTH
-def test_velocity_in_the_local_frame(autopilot: Autopilot) -> None:
-    meaning = meaning_of(local(VELOCITY, velocity=(3.0, -1.0, 0.5)), flying(autopilot))
-    assert meaning == Sample(v_ned=(3.0, -1.0, 0.5))
-
-
-@BOTH
-def test_yaw_and_yaw_rate_come_with_it_where_the_mask_leaves_them(autopilot: Autopilot) -> None:
-    velocity = (3.0, 0.0, 0.0)
-    yaw = meaning_of(local(VELOCITY & YAW_GIVEN, velocity=velocity, yaw=1.5), flying(autopilot))
-    assert yaw == Sample(v_ned=velocity, yaw_rad=1.5)
-    turning = local(VELOCITY & YAW_RATE_GIVEN, velocity=velocity, yaw_rate=0.25)
-    assert meaning_of(turning, flying(autopilot)) == Sample(v_ned=velocity, yaw_rate_rad_s=0.25)
-
-
-@BOTH
-def test_position_and_velocity_and_acceleration(autopilot: Autopilot) -> None:
-    place, velocity, acceleration = (4.0, 5.0, -20.0), (1.0, 0.0, 0.0), (0.5, 0.0, 0.0)
-    both = local(POSITION_VELOCITY, place, velocity)
-    assert meaning_of(both, flying(autopilot)) == Sample(place, velocity)
-    three = local(ALL_THREE, place, velocity, acceleration)
-    assert meaning_of(three, flying(autopilot)) == Sample(place, velocity, acceleration)
-    alone = local(ACCELERATION, acceleration=acceleration)
-    assert meaning_of(alone, flying(autopilot)) == Sample(a_ned=acceleration)
-
-
-def test_position_with_acceleration_alone_is_not_ardupilots() -> None:
-    message = local(POSITION_ACCELERATION, (4.0, 5.0, -20.0), acceleration=(0.5, 0.0, 0.0))
-    assert sample(meaning_of(message, flying(PX4))).a_ned == (0.5, 0.0, 0.0)
-    assert refusal(meaning_of(message, flying(ARDUPILOT))).startswith("UNSUPPORTED")
-
-
-def test_a_position_is_a_sample_to_px4_and_a_go_to_to_ardupilot() -> None:
-    """ArduCopter's GUIDED flies on to a position that came once; PX4's OFFBOARD falls back."""
-    message = local(POSITION & YAW_GIVEN, (4.0, 5.0, -20.0), yaw=math.pi / 2)
-    stream = Sample((4.0, 5.0, -20.0), yaw_rad=pytest.approx(math.pi / 2))  # type: ignore[arg-type]
-    assert meaning_of(message, flying(PX4)) == stream
-    once = meaning_of(message, flying(ARDUPILOT))
-    assert goal(once) == (5.0, 4.0, 20.0)
-    assert isinstance(once, Words)
-    assert once.asks[0].yaw_deg == pytest.approx(90.0, abs=1e-4)
-    assert once.if_repeated == stream
-
-
-def test_ardupilots_go_to_does_not_leave_a_hold() -> None:
-    """GCS_Mavlink.cpp: outside GUIDED such a message is not read."""
-    held = flying(ARDUPILOT, state=State.HOLDING)
-    assert words(meaning_of(local(POSITION, (4.0, 5.0, -20.0)), held)) == ["goto"]
-
-
-# -------------------------------------------------------------------------------- body frame
-
-
-@BOTH
-def test_velocity_in_the_body_frame_turns_with_the_nose(autopilot: Autopilot) -> None:
-    """It points east: forward is east, right is south; down stays down."""
-    message = local(VELOCITY, velocity=(3.0, 1.0, 0.5), frame=BODY)
-    flown = sample(meaning_of(message, flying(autopilot)))
-    assert flown.v_ned == pytest.approx((-1.0, 3.0, 0.5), abs=1e-6)
-
-
-@BOTH
-def test_the_body_frame_needs_a_heading(autopilot: Autopilot) -> None:
-    message = local(VELOCITY, velocity=(3.0, 1.0, 0.5), frame=BODY)
-    assert refusal(meaning_of(message, flying(autopilot, yaw_rad=None))).startswith("NO_POSITION")
-
-
-@pytest.mark.parametrize("frame", [BODY, BODY_OFFSET])
-def test_ardupilots_body_positions_count_from_here_and_turn_with_the_nose(frame: int) -> None:
-    """10 m forward and 2 m up, from (1, 2, -22), facing east; yaw is relative."""
-    message = local(POSITION & YAW_GIVEN, (10.0, 0.0, -2.0), yaw=math.pi / 4, frame=frame)
-    meaning = meaning_of(message, flying(ARDUPILOT))
-    assert goal(meaning) == pytest.approx((12.0, 1.0, 24.0), abs=1e-5)
-    assert isinstance(meaning, Words)
-    assert meaning.asks[0].yaw_deg == pytest.approx(135.0, abs=1e-4)
-
-
-def test_ardupilots_offset_positions_count_from_here() -> None:
-    """QGroundControl changes ArduPilot's height so, with type_mask 0xFFF8 (from memory)."""
-    message = local(0xFFF8, (0.0, 0.0, -5.0), frame=LOCAL_OFFSET)
-    assert goal(meaning_of(message, flying(ARDUPILOT))) == (2.0, 1.0, 27.0)
-    unknown = flying(ARDUPILOT, pos_ned=None)
-    assert refusal(meaning_of(message, unknown)).startswith("NO_POSITION")
-
-
-def test_px4_flies_no_position_in_the_body_frame() -> None:
-    message = local(POSITION_VELOCITY, (1.0, 0.0, 0.0), (1.0, 0.0, 0.0), frame=BODY)
-    assert refusal(meaning_of(message, flying(PX4))).startswith("UNSUPPORTED")
-
-
-def test_px4s_yaw_is_from_north_in_the_body_frame_too() -> None:
-    message = local(VELOCITY & YAW_GIVEN, velocity=(1.0, 0.0, 0.0), yaw=0.5, frame=BODY)
-    assert sample(meaning_of(message, flying(PX4))).yaw_rad == 0.5
-
-
-@pytest.mark.parametrize(
-    ("autopilot", "frame"),
-    [
-        (PX4, LOCAL_OFFSET),
-        (PX4, BODY_OFFSET),
+EXACT_ITEM = sent(
+    mavlink.MAVLink_mission_item_int_message(
+        1, 1, 0, 6, 16, 2, 0, 0, 0, 0, 0, round(LAT * 1e7), round(LON * 1e7), 5.0
+    )
+)
+TARGETS = {
+    "in the local frame": [
+        Row(BOTH, air(), local(VELOCITY, velocity=(3, -1, 0.5)), "sample v 3 -1 0.5"),
+        # Yaw and yaw rate come with it where the mask leaves them.
+        Row(
+            BOTH,
+            air(),
+            local(VELOCITY & YAW_GIVEN, velocity=NORTHWARD, yaw=1.5),
+            "sample v 1 0 0 yaw 1.5",
+        ),
+        Row(
+            BOTH,
+            air(),
+            local(VELOCITY & YAW_RATE_GIVEN, velocity=NORTHWARD, yaw_rate=0.25),
+            "sample v 1 0 0 rate 0.25",
+        ),
+        Row(
+            BOTH,
+            air(),
+            local(POSITION_VELOCITY, HERE, NORTHWARD),
+            "sample pos 4 5 -20 v 1 0 0",
+        ),
+        Row(
+            BOTH,
+            air(),
+            local(ALL_THREE, HERE, NORTHWARD, LITTLE),
+            "sample pos 4 5 -20 v 1 0 0 a 0.5 0 0",
+        ),
+        Row(BOTH, air(), local(ACCELERATION, acceleration=LITTLE), "sample a 0.5 0 0"),
+        Row(
+            P,
+            air(),
+            local(POSITION_ACCELERATION, HERE, acceleration=LITTLE),
+            "sample pos 4 5 -20 a 0.5 0 0",
+        ),
+        Row(A, air(), local(POSITION_ACCELERATION, HERE, acceleration=LITTLE), "UNSUPPORTED"),
+    ],
+    # ArduCopter's GUIDED flies on to a position that came once; PX4's OFFBOARD falls back.
+    "a position is a sample to PX4 and a go-to to ArduPilot": [
+        Row(
+            P,
+            air(),
+            local(POSITION & YAW_GIVEN, HERE, yaw=math.pi / 2),
+            "sample pos 4 5 -20 yaw 1.5708",
+        ),
+        Row(
+            A,
+            air(),
+            local(POSITION & YAW_GIVEN, HERE, yaw=math.pi / 2),
+            "goto 5 4 20 yaw 90 / sample pos 4 5 -20 yaw 1.5708",
+        ),
+        # GCS_Mavlink.cpp: outside GUIDED such a message is not read.
+        Row(A, air(State.HOLDING), local(POSITION, HERE), "goto 5 4 20 / sample pos 4 5 -20"),
+    ],
+    # It points east: forward is east, right is south; down stays down.
+    "in the body frame": [
+        Row(
+            BOTH,
+            air(),
+            local(VELOCITY, velocity=(3, 1, 0.5), frame=BODY),
+            "sample v -1 3 0.5",
+        ),
+        Row(
+            BOTH, air(yaw_rad=None), local(VELOCITY, velocity=NORTHWARD, frame=BODY), "NO_POSITION"
+        ),
+        # 10 m forward and 2 m up, from (1, 2, -22); yaw is relative.
         *(
-            (autopilot, frame)
-            for autopilot in (PX4, ARDUPILOT)
-            for frame in (0, 2, 3, 4, 6, 12, 20, 255)
+            Row(
+                A,
+                air(),
+                local(POSITION & YAW_GIVEN, (10, 0, -2), yaw=math.pi / 4, frame=frame),
+                "goto 12 1 24 yaw 135 / sample pos 1 12 -24 yaw 2.35619",
+            )
+            for frame in (BODY, BODY_OFFSET)
+        ),
+        # QGroundControl changes ArduPilot's height so, with type_mask 0xFFF8 (from memory).
+        Row(
+            A,
+            air(),
+            local(0xFFF8, (0, 0, -5), frame=LOCAL_OFFSET),
+            "goto 2 1 27 / sample pos 1 2 -27",
+        ),
+        Row(A, air(pos_ned=None), local(0xFFF8, (0, 0, -5), frame=LOCAL_OFFSET), "NO_POSITION"),
+        Row(P, air(), local(POSITION_VELOCITY, NORTHWARD, NORTHWARD, frame=BODY), "UNSUPPORTED"),
+        # PX4's yaw is from north in the body frame too.
+        Row(
+            P,
+            air(),
+            local(VELOCITY & YAW_GIVEN, velocity=NORTHWARD, yaw=0.5, frame=BODY),
+            "sample v 0 1 0 yaw 0.5",
         ),
     ],
-)
-def test_frames_that_are_not_flown(autopilot: Autopilot, frame: int) -> None:
-    message = local(VELOCITY, velocity=(1.0, 0.0, 0.0), frame=frame)
-    assert f"frame {frame}" in refusal(meaning_of(message, flying(autopilot)))
+    "frames that are not flown": [
+        Row(who, air(), local(VELOCITY, velocity=NORTHWARD, frame=f), f"UNSUPPORTED: frame {f}")
+        for who, frames in (
+            (P, (LOCAL_OFFSET, BODY_OFFSET)),
+            (BOTH, (0, 2, 3, 4, 6, 12, 20, 255)),
+        )
+        for f in frames
+    ],
+    "masks": [
+        Row(BOTH, air(), local(ACCELERATION | FORCE, acceleration=NORTHWARD), "UNSUPPORTED: force"),
+        Row(BOTH, air(), local(VELOCITY | FORCE, velocity=NORTHWARD), "sample v 1 0 0"),
+        *(
+            Row(BOTH, air(), local(mask), "UNSUPPORTED: nothing to fly to")
+            for mask in (NOTHING, NOTHING & YAW_GIVEN, 0xFFFF)
+        ),
+        # PX4 leaves such an axis uncontrolled; ArduPilot ignores the whole triple.
+        *(
+            Row(
+                BOTH,
+                air(),
+                local(ALL_THREE | 1 << bit, HERE, NORTHWARD, LITTLE),
+                "UNSUPPORTED: single axes",
+            )
+            for bit in range(9)
+        ),
+        # MAVSDK fills what it does not use with NaN or zero.
+        Row(
+            BOTH,
+            air(),
+            local(VELOCITY, NANS, NORTHWARD, NANS, yaw=NAN, yaw_rate=NAN),
+            "sample v 1 0 0",
+        ),
+    ],
+    "numbers that are none": [
+        Row(BOTH, air(), message, "NON_FINITE")
+        for bad in BAD
+        for message in (
+            local(VELOCITY, velocity=(0, bad, 0)),
+            local(POSITION, (0, 0, bad)),
+            on_the_map(POSITION, (47.397742, LON, bad)),
+        )
+    ],
+    # PX4 1.14 takes NaN as no heading, as mavpilot 0.3.0 sends it; an infinite one it may fly.
+    "a heading that is no number": [
+        Row(who, air(), message, asks_for)
+        for who, bad, asks_for in (
+            (P, NAN, "sample v 1 0 0"),
+            (A, NAN, "NON_FINITE"),
+            (BOTH, math.inf, "NON_FINITE"),
+            (BOTH, -math.inf, "NON_FINITE"),
+        )
+        for message in (
+            local(VELOCITY & YAW_GIVEN, velocity=NORTHWARD, yaw=bad),
+            local(VELOCITY & YAW_RATE_GIVEN, velocity=NORTHWARD, yaw_rate=bad),
+        )
+    ],
+    # 111.19 m north by PX4's sphere, 111.32 m by ArduPilot's factor; 5 m above home is 17 m above
+    # the origin.
+    "a place on the map": [
+        *(
+            row
+            for frame, alt_m in ((GLOBAL_INT, 505), (RELATIVE_INT, 5))
+            for place in (on_the_map(POSITION, (LAT, LON, alt_m), frame=frame),)
+            for row in (
+                Row(P, air(), place, "sample pos 111.195 0 -17"),
+                Row(A, air(), place, "goto 0 111.319 17 / sample pos 111.319 0 -17"),
+            )
+        ),
+        # ArduPilot takes the frames without INT too, PX4 does not.
+        *(
+            row
+            for frame, alt_m in ((GLOBAL, 505), (RELATIVE, 5))
+            for place in (on_the_map(POSITION, (LAT, LON, alt_m), frame=frame),)
+            for row in (
+                Row(A, air(), place, "goto 0 111.319 17 / sample pos 111.319 0 -17"),
+                Row(P, air(), place, "UNSUPPORTED"),
+            )
+        ),
+        *(
+            Row(BOTH, air(), on_the_map(POSITION, (LAT, LON, 5), frame=frame), "UNSUPPORTED")
+            for frame in (TERRAIN, TERRAIN_INT, LOCAL_NED, BODY, 255)
+        ),
+        Row(BOTH, air(), on_the_map(VELOCITY, velocity=(1, 2, -0.5)), "sample v 1 2 -0.5"),
+        Row(BOTH, air(origin=None), on_the_map(POSITION, (LAT, LON, 5)), "NO_ORIGIN"),
+        Row(
+            BOTH,
+            air(home_ned=None, home_amsl_m=None),
+            on_the_map(POSITION, (LAT, LON, 5)),
+            "NO_ORIGIN",
+        ),
+        Row(BOTH, air(), on_the_map(POSITION, (100, 8, 5)), "NON_FINITE: no place on the map"),
+    ],
+    "a guided item of an ArduPilot is a go-to": [
+        Row(A, air(), EXACT_ITEM, "goto 0 111.319 17"),
+        Row(A, air(), item(2), "goto 0.0162 111.394 17"),  # a float32 is good to 0.4 m
+        # ArduCopter: "only process guided waypoint if we are in guided mode" (its mode_auto).
+        Row(A, air(State.HOLDING), EXACT_ITEM, "goto 0 111.319 17"),
+        # `current` 3 is another height.
+        Row(A, air(), item(3, alt=8), "goto 2 1 20"),
+        Row(A, air(State.MOVING, goal_ned=(30, 40, -22)), item(3, alt=8), "goto 40 30 20"),
+    ],
+    "items that are no go-to": [
+        Row(P, air(), item(2), "UNSUPPORTED"),
+        Row(A, air(), item(2, frame=10), "UNSUPPORTED"),
+        Row(A, air(), item(0), "BAD_MISSION"),
+        Row(A, air(), item(2, lat=NAN), "NON_FINITE"),
+        Row(A, air(), item(2, alt=NAN), "NON_FINITE"),
+        Row(A, air(), item(2, command=21), "UNSUPPORTED"),
+        Row(P, air(), sent(mavlink.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)), "UNSUPPORTED"),
+    ],
+}
 
 
-# ------------------------------------------------------------------------------------- masks
-
-
-@BOTH
-def test_a_force_is_refused_but_its_bit_alone_means_nothing(autopilot: Autopilot) -> None:
-    force = local(ACCELERATION | FORCE, acceleration=(1.0, 0.0, 0.0))
-    assert "force" in refusal(meaning_of(force, flying(autopilot)))
-    bit = local(VELOCITY | FORCE, velocity=(1.0, 0.0, 0.0))
-    assert meaning_of(bit, flying(autopilot)) == Sample(v_ned=(1.0, 0.0, 0.0))
-
-
-@BOTH
-@pytest.mark.parametrize("mask", [EVERYTHING_IGNORED, EVERYTHING_IGNORED & YAW_GIVEN, 0xFFFF])
-def test_a_mask_that_leaves_nothing_to_fly_to(autopilot: Autopilot, mask: int) -> None:
-    assert "nothing to fly to" in refusal(meaning_of(local(mask), flying(autopilot)))
-
-
-@BOTH
-@pytest.mark.parametrize("bit", range(9))
-def test_single_axes_are_refused(autopilot: Autopilot, bit: int) -> None:
-    """PX4 leaves such an axis uncontrolled; ArduPilot ignores the whole triple."""
-    message = local(ALL_THREE | 1 << bit, (4.0, 5.0, -20.0), (1.0, 0.0, 0.0), (0.5, 0.0, 0.0))
-    assert "single axes" in refusal(meaning_of(message, flying(autopilot)))
-
-
-@BOTH
-@pytest.mark.parametrize("bad", [NAN, math.inf, -math.inf])
-def test_numbers_that_are_none(autopilot: Autopilot, bad: float) -> None:
-    seen = flying(autopilot)
-    for message in (
-        local(VELOCITY, velocity=(0.0, bad, 0.0)),
-        local(POSITION, (0.0, 0.0, bad)),
-        on_the_map(POSITION, 47.397742, 8.545594, bad),
-    ):
-        assert refusal(meaning_of(message, seen)).startswith("NON_FINITE")
-
-
-@BOTH
-@pytest.mark.parametrize("bad", [NAN, math.inf, -math.inf])
-def test_a_heading_that_is_no_number(autopilot: Autopilot, bad: float) -> None:
-    """PX4 1.14 takes NaN as no heading, as mavpilot 0.3.0 sends it; an infinite one it may fly."""
-    for message in (
-        local(VELOCITY & YAW_GIVEN, velocity=(1.0, 0.0, 0.0), yaw=bad),
-        local(VELOCITY & YAW_RATE_GIVEN, velocity=(1.0, 0.0, 0.0), yaw_rate=bad),
-    ):
-        meaning = meaning_of(message, flying(autopilot))
-        if autopilot is PX4 and math.isnan(bad):
-            assert meaning == Sample(v_ned=(1.0, 0.0, 0.0))
-        else:
-            assert refusal(meaning).startswith("NON_FINITE")
-
-
-@BOTH
-def test_what_is_ignored_may_be_anything(autopilot: Autopilot) -> None:
-    """MAVSDK fills what it does not use with NaN or zero."""
-    nans = (NAN, NAN, NAN)
-    message = local(VELOCITY, nans, (1.0, 0.0, 0.0), nans, yaw=NAN, yaw_rate=NAN)
-    assert meaning_of(message, flying(autopilot)) == Sample(v_ned=(1.0, 0.0, 0.0))
-
-
-# ------------------------------------------------------------------------------- on the map
-
-
-@BOTH
-@pytest.mark.parametrize(("frame", "alt_m"), [(GLOBAL_INT, 505.0), (RELATIVE_INT, 5.0)])
-def test_a_place_on_the_map(autopilot: Autopilot, frame: int, alt_m: float) -> None:
-    """111.19 m north by PX4's sphere (0.001 degrees), 111.32 m by ArduPilot's factor; 5 m above
-    home is 17 m above the origin."""
-    north_m = {"px4": 111.1949, "ardupilot": 111.3188}[autopilot.name]
-    message = on_the_map(POSITION, 47.398742, 8.545594, alt_m, frame=frame)
-    flown = sample(meaning_of(message, flying(autopilot)))
-    assert flown.pos_ned == pytest.approx((north_m, 0.0, -17.0), abs=0.01)
-
-
-def test_ardupilot_takes_the_frames_without_int_too_px4_does_not() -> None:
-    for frame, alt_m in ((GLOBAL, 505.0), (RELATIVE, 5.0)):
-        message = on_the_map(POSITION, 47.398742, 8.545594, alt_m, frame=frame)
-        assert goal(meaning_of(message, flying(ARDUPILOT)))[2] == pytest.approx(17.0)
-        assert refusal(meaning_of(message, flying(PX4))).startswith("UNSUPPORTED")
-
-
-@BOTH
-@pytest.mark.parametrize("frame", [TERRAIN, TERRAIN_INT, LOCAL_NED, BODY, 255])
-def test_places_in_frames_that_cannot_be_verified(autopilot: Autopilot, frame: int) -> None:
-    message = on_the_map(POSITION, 47.398742, 8.545594, 5.0, frame=frame)
-    assert refusal(meaning_of(message, flying(autopilot))).startswith("UNSUPPORTED")
-
-
-@BOTH
-def test_velocities_on_the_map_are_north_east_down(autopilot: Autopilot) -> None:
-    message = on_the_map(VELOCITY, velocity=(1.0, 2.0, -0.5))
-    assert meaning_of(message, flying(autopilot)) == Sample(v_ned=(1.0, 2.0, -0.5))
-
-
-@BOTH
-def test_a_place_on_the_map_needs_the_origin(autopilot: Autopilot) -> None:
-    message = on_the_map(POSITION, 47.398742, 8.545594, 5.0)
-    assert refusal(meaning_of(message, flying(autopilot, origin=None))).startswith("NO_ORIGIN")
-    homeless = flying(autopilot, home_ned=None, home_amsl_m=None)
-    assert refusal(meaning_of(message, homeless)).startswith("NO_ORIGIN")
-
-
-@BOTH
-def test_no_place_on_the_map(autopilot: Autopilot) -> None:
-    message = on_the_map(POSITION, 100.0, 8.0, 5.0)
-    assert "no place on the map" in refusal(meaning_of(message, flying(autopilot)))
+@table(TARGETS)
+def test_what_a_setpoint_or_an_item_asks_for(rows: Sequence[Row]) -> None:
+    hold(rows)

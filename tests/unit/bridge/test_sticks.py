@@ -15,7 +15,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
-from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.bridge.translate.meaning import Reject, Sample, Seen, Settled, Sticks, Words
@@ -27,7 +26,15 @@ from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.wire.messages import Message
-from tests.unit.bridge.vehicles import command_long, flying, refusal, sent, standing, words
+from tests.unit.bridge.vehicles import (
+    copter_mode,
+    flying,
+    px4_mode,
+    refusal,
+    sent,
+    standing,
+    words,
+)
 
 BOTH = pytest.mark.parametrize("autopilot", [PX4, ARDUPILOT], ids=lambda a: a.name)
 MISSING = 0x7FFF
@@ -43,7 +50,6 @@ RULES = structs.replace(
     stick_dead_band=0.1,
 )
 NORTH = 0.0
-COPTER = {name: number for number, name in mavutil.mode_mapping_acm.items()}
 
 
 def manual(x: int = 0, y: int = 0, z: int = 500, r: int = 0, buttons: int = 0) -> Message:
@@ -376,18 +382,13 @@ def test_on_the_ground_no_stick_arms_or_takes_off(
 # ------------------------------------------------------------------------------------- modes
 
 
-def px4(name: str) -> Message:
-    base, main, sub = mavutil.px4_map[name]
-    return command_long(176, float(base), float(main), float(sub))
-
-
-def copter(name: str) -> Message:
-    return command_long(176, 1.0, float(COPTER[name]))
-
-
 POSITION = pytest.mark.parametrize(
     ("autopilot", "message"),
-    [(PX4, px4("POSCTL")), (ARDUPILOT, copter("POSHOLD")), (ARDUPILOT, copter("LOITER"))],
+    [
+        (PX4, px4_mode("POSCTL")),
+        (ARDUPILOT, copter_mode("POSHOLD")),
+        (ARDUPILOT, copter_mode("LOITER")),
+    ],
     ids=["POSCTL", "POSHOLD", "LOITER"],
 )
 
@@ -414,7 +415,7 @@ def test_the_position_mode_that_would_be_refused_stops_nothing_but_a_hold_stops(
     why = Refusal(Code.SEVERITY, "severity is RETURN: battery_critical")
     seen = hovering(autopilot, state=State.RETURNING, has_sticks=True, why_not_resume=lambda: why)
     meaning = meaning_of(message, seen)
-    if message == copter("LOITER"):
+    if message == copter_mode("LOITER"):
         assert words(meaning) == ["hold"]
     else:
         assert meaning == Reject(why)
@@ -427,7 +428,7 @@ def test_the_position_mode_leaves_a_hold(autopilot: Autopilot, message: Message)
         assert words(meaning_of(message, seen))[-1] == "resume"
 
 
-@pytest.mark.parametrize("message", [px4("POSCTL")])
+@pytest.mark.parametrize("message", [px4_mode("POSCTL")])
 def test_posctl_where_the_gate_hovers_already(message: Message) -> None:
     assert words(meaning_of(message, hovering(has_sticks=True))) == []
     streaming = hovering(state=State.STREAMING, has_sticks=True)
@@ -441,31 +442,31 @@ def test_posctl_where_the_gate_hovers_already(message: Message) -> None:
 def test_posctl_on_the_ground_is_a_mode_that_px4_arms_in() -> None:
     """B4_posctl_mode_without_stream of scenarios_px4.json: arming in POSCTL is
     TEMPORARILY_REJECTED while the vehicle hears no sticks, and it hears none of a client's."""
-    meaning = meaning_of(px4("POSCTL"), standing(PX4, has_sticks=True))
+    meaning = meaning_of(px4_mode("POSCTL"), standing(PX4, has_sticks=True))
     assert words(meaning) == ["hold"]
     assert isinstance(meaning, Words)
     assert "take off, then the sticks fly" in meaning.note
-    assert words(meaning_of(px4("POSCTL"), standing(PX4))) == ["mode"]
+    assert words(meaning_of(px4_mode("POSCTL"), standing(PX4))) == ["mode"]
     armed = standing(PX4, has_sticks=True, armed=True)
-    assert refusal(meaning_of(px4("POSCTL"), armed)).startswith("POLICY")
+    assert refusal(meaning_of(px4_mode("POSCTL"), armed)).startswith("POLICY")
 
 
 def test_loiter_is_a_stop_for_everybody_else() -> None:
     """Never refused: who is not in control, who has no sticks, on the ground."""
     for changed in ({"in_control": False}, {"has_sticks": False}, {"on_ground": True}):
         seen = hovering(ARDUPILOT, state=State.MOVING, **{"has_sticks": True, **changed})
-        assert words(meaning_of(copter("LOITER"), seen)) == ["hold"]
+        assert words(meaning_of(copter_mode("LOITER"), seen)) == ["hold"]
 
 
 def test_the_hold_of_the_autopilot_stays_a_hold_for_who_has_sticks() -> None:
-    for autopilot, message in ((PX4, px4("LOITER")), (ARDUPILOT, copter("BRAKE"))):
+    for autopilot, message in ((PX4, px4_mode("LOITER")), (ARDUPILOT, copter_mode("BRAKE"))):
         seen = hovering(autopilot, state=State.MOVING, has_sticks=True)
         assert words(meaning_of(message, seen)) == ["hold"]
 
 
 @pytest.mark.parametrize(
     ("autopilot", "message"),
-    [(PX4, px4("POSCTL")), (ARDUPILOT, copter("POSHOLD"))],
+    [(PX4, px4_mode("POSCTL")), (ARDUPILOT, copter_mode("POSHOLD"))],
     ids=["POSCTL", "POSHOLD"],
 )
 def test_without_sticks_there_is_no_position_mode(autopilot: Autopilot, message: Message) -> None:
@@ -477,7 +478,11 @@ def test_without_sticks_there_is_no_position_mode(autopilot: Autopilot, message:
 
 @pytest.mark.parametrize(
     ("autopilot", "message"),
-    [(PX4, px4("ALTCTL")), (PX4, px4("STABILIZED")), (ARDUPILOT, copter("ALT_HOLD"))],
+    [
+        (PX4, px4_mode("ALTCTL")),
+        (PX4, px4_mode("STABILIZED")),
+        (ARDUPILOT, copter_mode("ALT_HOLD")),
+    ],
     ids=["ALTCTL", "STABILIZED", "ALT_HOLD"],
 )
 def test_modes_that_hold_no_position_stay_refused(autopilot: Autopilot, message: Message) -> None:

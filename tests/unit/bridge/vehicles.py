@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
+from pymavlink import mavutil
 from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.bridge.translate.meaning import Reject, Seen, Words
@@ -19,6 +20,7 @@ from gcs.wire.messages import Message
 
 NAN = math.nan
 UNSET = 2**31 - 1
+COPTER_MODES = {name: number for number, name in mavutil.mode_mapping_acm.items()}
 HOVERING = {PX4.name: "OFFBOARD", ARDUPILOT.name: "GUIDED"}
 
 
@@ -82,6 +84,16 @@ def command_int(
     return sent(
         mavlink.MAVLink_command_int_message(1, 1, frame, command, 0, 0, p1, p2, p3, p4, x, y, z)
     )
+
+
+def px4_mode(name: str) -> Message:
+    """DO_SET_MODE as pymavlink's `set_mode_px4`: base mode, main mode, sub mode."""
+    return command_long(176, *map(float, mavutil.px4_map[name]))
+
+
+def copter_mode(name: str) -> Message:
+    """As pymavlink's `set_mode_apm` for a vehicle that takes DO_SET_MODE."""
+    return command_long(176, 1.0, float(COPTER_MODES[name]))
 
 
 def words(meaning: object) -> list[str]:
