@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
-from mcap.records import Attachment, Channel, Metadata
 
 from gcs.audit.inputs import CannotReadError, kept_of
 from gcs.audit.messages import (
@@ -19,7 +18,8 @@ from gcs.audit.messages import (
     metadata_name,
     payload_length,
 )
-from gcs.record.reading import Condition, Message, Reading
+from gcs.mcap_file.format import Attachment, Channel, Message, Metadata
+from gcs.mcap_file.reader import Condition, Reading
 from gcs.record.seals import PartBegan
 from gcs.vehicle.record_items import Start
 

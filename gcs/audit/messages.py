@@ -7,9 +7,8 @@ from typing import NamedTuple, TypeAlias
 
 import msgspec
 
+from gcs.mcap_file.writer import Channel, GuardedFile, Log
 from gcs.record import ros1
-from gcs.record.backend import Channel, Log
-from gcs.record.guarded_file import GuardedFile
 from gcs.record.topics import INPUT_TOPIC as INPUT_TOPIC
 from gcs.report import Direction
 

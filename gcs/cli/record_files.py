@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +14,7 @@ from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
-    from gcs.record.reading import Condition
+    from gcs.mcap_file.reader import Progress
 
 RECORD = click.Path(exists=True, dir_okay=False, path_type=Path)
 """The type of an argument that names a record."""
@@ -34,7 +34,7 @@ PROGRESS_FROM_BYTES = 20_000_000
 @contextmanager
 def told(file: Path) -> Iterator[None]:
     """What can be wrong with a record becomes one sentence and exit 4."""
-    from gcs.record.reading import BadRecordError
+    from gcs.mcap_file.errors import BadRecordError
 
     try:
         yield
@@ -49,7 +49,7 @@ def told(file: Path) -> Iterator[None]:
 
 
 @contextmanager
-def reading_progress(file: Path, label: str) -> Iterator[Callable[[Condition], None] | None]:
+def reading_progress(file: Path, label: str) -> Iterator[Progress | None]:
     """A bar on a terminal, for files that take over a second."""
     size = file.stat().st_size
     if size < PROGRESS_FROM_BYTES or not sys.stderr.isatty():

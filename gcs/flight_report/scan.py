@@ -7,20 +7,20 @@ does not grow with the length of the record.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Protocol
 
 import msgspec
-from mcap.records import Attachment, Channel, Metadata, Schema
 
 from gcs.flight_report.facts import Decision, Fact, Identity, LogLine, Text
 from gcs.flight_report.flight import Fence, Flight, VehicleFlight
 from gcs.flight_report.topics import UNREADABLE, Source, source_of
 from gcs.flight_report.vehicle_scan import VehicleScan
 from gcs.gate.policy.parse import DEFAULT
+from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Record, Schema
+from gcs.mcap_file.reader import Condition, Progress, Reading
 from gcs.record import ros1
-from gcs.record.reading import Condition, Message, Reading, Record
 from gcs.report import Direction, FenceShape
 
 _FENCE = "/gate/fence"
@@ -42,11 +42,11 @@ class _FenceMessage(msgspec.Struct):
 _decode_fence = msgspec.json.Decoder(_FenceMessage).decode
 
 
-def scan(path: Path, progress: Callable[[Condition], None] | None = None) -> Flight:
+def scan(path: Path, progress: Progress | None = None) -> Flight:
     """Read the whole record.  Raises BadRecordError and OSError."""
-    records = open_flight(path)
+    records = open_flight(path, progress)
     scanning = Scan(Flight(path.name, records.condition.size))
-    for number, record in enumerate(records):
+    for record in records:
         match record:
             case Message():
                 scanning.message(record)
@@ -60,8 +60,6 @@ def scan(path: Path, progress: Callable[[Condition], None] | None = None) -> Fli
                 scanning.policy(data)
             case _:
                 pass
-        if progress is not None and number % 4096 == 0:
-            progress(records.condition)
     return scanning.finish(records.condition)
 
 
@@ -197,11 +195,11 @@ class FlightRecords(Protocol):
     def __iter__(self) -> Iterator[Record]: ...
 
 
-def open_flight(path: Path) -> FlightRecords:
+def open_flight(path: Path, progress: Progress | None = None) -> FlightRecords:
     """The records of a recorded flight.
 
     Iterating raises BadRecordError for what cannot be read.  Raises OSError.
     """
     from gcs.logfile.as_record import LogReading, is_other_log
 
-    return LogReading(path) if is_other_log(path) else Reading(path)
+    return LogReading(path, progress) if is_other_log(path) else Reading(path, progress)

@@ -10,10 +10,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from gcs.logfile.batch_writer import BatchWriter
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.imports.formats import importer_of
-from gcs.record.reading import BadRecordError, Condition, Reading, Record
+from gcs.mcap_file.batch_writer import BatchWriter
+from gcs.mcap_file.errors import BadLogError, BadRecordError
+from gcs.mcap_file.format import Record
+from gcs.mcap_file.reader import Condition, Progress, Reading
 
 SUFFIXES = (".tlog", ".bin", ".ulg")
 
@@ -24,8 +25,9 @@ class LogReading:
     Raises BadRecordError for what none of them is, and OSError.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, progress: Progress | None = None) -> None:
         self.path = path
+        self._progress = progress
         self.condition = Condition(path.stat().st_size)
 
     def __iter__(self) -> Iterator[Record]:
@@ -40,7 +42,7 @@ class LogReading:
             except BadLogError as error:
                 hint = f" ({error.hint})" if error.hint else ""
                 raise BadRecordError(self.path, f"{error.reason}{hint}") from error
-            reading = Reading(made)
+            reading = Reading(made, self._progress)
             self.condition = reading.condition
             yield from reading
 

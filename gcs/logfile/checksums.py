@@ -12,21 +12,12 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-Bytes = NDArray[np.uint8]
+from gcs.mcap_file.chunk_reader import Bytes
+
 Words = NDArray[np.uint16]
-Index = NDArray[np.int64]
 
 _BLOCK_ROWS = 16_384
 """So many rows at a time stay in the processor's cache."""
-
-
-def rows_at(data: Bytes, starts: Index, width: int) -> Bytes:
-    """`width` bytes from each of `starts`, one row each; all must lie inside `data`."""
-    if width == 0 or not len(starts):
-        return np.zeros((len(starts), width), np.uint8)
-    # A view of overlapping items, from which numpy copies whole items.
-    items = np.ndarray((len(data) - width + 1,), f"V{width}", data, 0, (1,))
-    return items[starts].view(np.uint8).reshape(len(starts), width)
 
 
 def crc_of_rows(rows: Bytes, crc_extra: Bytes) -> Words:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from enum import Enum
 from pathlib import Path
 
-from gcs.logfile.errors import BadLogError
-from gcs.record.reading import MAGIC as MCAP_MAGIC
+from gcs.mcap_file.errors import BadLogError
+from gcs.mcap_file.format import MAGIC as MCAP_MAGIC
 
 _DATAFLASH_MAGIC = b"\xa3\x95"
 _ULOG_MAGIC = b"ULog\x01\x12\x35"

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.logfile.checksums import Bytes, Index, crc_of_rows, rows_at
+from gcs.logfile.checksums import crc_of_rows
+from gcs.mcap_file.chunk_reader import Bytes, Index, rows_at
 from gcs.wire.dialect import MESSAGES
 from gcs.wire.frame import (
     CHECKSUM_SIZE,

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gcs.logfile.columns.layout import Records
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 
 TIME_FIELD = "time_ns"
 """First field of every table: when it was logged, ns since 1970 or since the start.  In a record it

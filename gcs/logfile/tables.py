@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from mcap.records import Channel
 
 from gcs.logfile import packed, tlog
-from gcs.logfile.checksums import Index, rows_at
-from gcs.logfile.chunks import MESSAGE_BYTES, MESSAGE_HEAD, Chunk, ChunkFile
 from gcs.logfile.columns.layout import Records, records
 from gcs.logfile.columns.read import frames_as_records, is_frames_of
 from gcs.logfile.formats import Format, format_of
+from gcs.mcap_file.chunk_reader import MESSAGE_BYTES, MESSAGE_HEAD, Chunk, ChunkFile, Index, rows_at
+from gcs.mcap_file.format import Channel
 from gcs.wire.dialect import MESSAGES, MESSAGES_BY_NAME
 
 FRAMES = "mavlink"

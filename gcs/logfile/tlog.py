@@ -17,10 +17,10 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.logfile.checksums import Bytes, rows_at
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.frames import PADDING, Frames, Mask, find_frames, find_message
-from gcs.record.reading import MAGIC as MCAP_MAGIC
+from gcs.mcap_file.chunk_reader import Bytes, rows_at
+from gcs.mcap_file.errors import BadLogError
+from gcs.mcap_file.format import MAGIC as MCAP_MAGIC
 from gcs.wire.frame import HEADER_V1, HEADER_V2, MAGIC_V1, MAX_FRAME, frame_at
 
 WINDOW_BYTES = 4 << 20

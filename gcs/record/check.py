@@ -6,12 +6,20 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeAlias
 
-from mcap.records import Channel, Schema
+import msgspec
 
-from gcs.record.decodable import Wrong, checker, wrong_with_channel
-from gcs.record.index_check import wrong_with_index
-from gcs.record.reading import Condition, Message, Reading
+from gcs.mcap_file.format import Channel, Message, Schema
+from gcs.mcap_file.index_check import wrong_with_index
+from gcs.mcap_file.reader import Condition, Progress, Reading
+from gcs.record import ros1
+
+_Wrong: TypeAlias = Callable[[bytes], str]
+"""What is wrong with a message; empty = nothing."""
+
+_SCHEMA_OF = {"json": "jsonschema", "ros1": "ros1msg", "protobuf": "protobuf"}
+_decode_json = msgspec.json.Decoder().decode
 
 TOLD_A_KIND = 5
 """So many findings of a kind are told one by one; all are counted."""
@@ -51,11 +59,11 @@ class CheckResult:
             self.findings.append(Finding(kind, text))
 
 
-def check(path: Path, progress: Callable[[Condition], None] | None = None) -> CheckResult:
+def check(path: Path, progress: Progress | None = None) -> CheckResult:
     """Read the whole file, then what its index leads to.  Raises BadRecordError and OSError."""
-    reading = Reading(path)
+    reading = Reading(path, progress)
     checking = _Checking(CheckResult(str(path), reading.condition.size))
-    for number, record in enumerate(reading):
+    for record in reading:
         match record:
             case Message():
                 checking.message(record)
@@ -65,8 +73,6 @@ def check(path: Path, progress: Callable[[Condition], None] | None = None) -> Ch
                 checking.schema(record)
             case _:
                 pass
-        if progress is not None and number % 4096 == 0:
-            progress(reading.condition)
     return checking.finish(reading.condition, path)
 
 
@@ -75,7 +81,7 @@ class _Checking:
         self._result = result
         self._schemas: dict[int, Schema] = {0: Schema(id=0, name="", encoding="", data=b"")}
         self._channels: dict[int, Channel] = {}
-        self._checkers: dict[int, Wrong | None] = {}
+        self._checkers: dict[int, _Wrong | None] = {}
         self._counts: Counter[int] = Counter()
         self._first_ns: int | None = None
         self._last_ns = 0
@@ -93,8 +99,8 @@ class _Checking:
                 self._result.add("channel", text)
             return
         self._channels[channel.id] = channel
-        self._checkers[channel.id] = checker(channel)
-        wrong = wrong_with_channel(channel, self._schemas.get(channel.schema_id))
+        self._checkers[channel.id] = _checker(channel)
+        wrong = _wrong_with_channel(channel, self._schemas.get(channel.schema_id))
         if wrong:
             self._result.add("channel", f"{channel.topic}: {wrong}")
 
@@ -136,3 +142,93 @@ class _Checking:
             for wrong in wrong_with_index(path, self._counts):
                 result.add("index", wrong)
         return result
+
+
+# --------------------------------------------------- can a reader decode this message?
+
+
+def _wrong_with_channel(channel: Channel, schema: Schema | None) -> str:
+    """What keeps a viewer from reading the channel; empty = nothing."""
+    if schema is None:
+        return f"its schema {channel.schema_id} is not in the file"
+    wanted = _SCHEMA_OF.get(channel.message_encoding)
+    if wanted is not None and schema.id and schema.encoding != wanted:
+        return f"its messages are {channel.message_encoding}, its schema is {schema.encoding!r}"
+    if wanted in ("ros1msg", "protobuf") and not schema.data:
+        return f"its messages are {channel.message_encoding}, and it has no schema"
+    return ""
+
+
+def _checker(channel: Channel) -> _Wrong | None:
+    """For the messages of the channel; None for what is not known here."""
+    match channel.message_encoding:
+        case "json":
+            return _wrong_json
+        case "protobuf":
+            return _wrong_protobuf
+        case "ros1" if ros1.PAYLOAD_LENGTH_KEY in channel.metadata:
+            text = channel.metadata[ros1.PAYLOAD_LENGTH_KEY]
+            if not text.isdecimal():
+                return lambda _: f"the channel's payload length is {text!r}"
+            tail_at = ros1.FRAME_BYTES + int(text)
+            return lambda data: _wrong_frame(data, tail_at)
+        case "ros1" if channel.topic.endswith("/garbage"):
+            return _wrong_garbage
+        case _:
+            return None
+
+
+def _wrong_json(data: bytes) -> str:
+    try:
+        _decode_json(data)
+    except (msgspec.MsgspecError, RecursionError) as error:
+        return f"no JSON: {error}"
+    return ""
+
+
+def _wrong_frame(data: bytes, tail_at: int) -> str:
+    rest = int.from_bytes(data[tail_at : tail_at + 4], "little")
+    if len(data) != tail_at + 4 + rest:
+        return f"{len(data)} bytes, where its fields have {tail_at + 4 + rest}"
+    return ""
+
+
+def _wrong_garbage(data: bytes) -> str:
+    at = 4 + int.from_bytes(data[:4], "little")
+    if len(data) != at + 4 + int.from_bytes(data[at : at + 4], "little"):
+        return "its length is not that of its fields"
+    return ""
+
+
+def _wrong_protobuf(data: bytes) -> str:
+    """Whether its fields end where it ends."""
+    at = 0
+    while at < len(data):
+        tag, at = _varint(data, at)
+        match tag & 7:
+            case _ if tag < 8:
+                return "no protobuf: field 0"
+            case 0:
+                _, at = _varint(data, at)
+            case 1:
+                at += 8
+            case 2:
+                length, at = _varint(data, at)
+                at += length
+            case 5:
+                at += 4
+            case other:
+                return f"no protobuf: wire type {other}"
+    return "" if at == len(data) else "no protobuf: it breaks off"
+
+
+def _varint(data: bytes, at: int) -> tuple[int, int]:
+    """The number and where it ends; past the end of `data` where it breaks off."""
+    value = shift = 0
+    while at < len(data) and shift < 70:
+        byte = data[at]
+        value |= (byte & 0x7F) << shift
+        at, shift = at + 1, shift + 7
+        if byte < 0x80:
+            return value, at
+    return 8, len(data) + 1

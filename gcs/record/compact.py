@@ -15,18 +15,18 @@ import signal
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryFile
 from zlib import crc32
 
-from mcap.records import Attachment, Channel, Metadata, Schema
-
-from gcs.record.copying import Source, new_record
-from gcs.record.index_check import wrong_with_index
-from gcs.record.reading import BadRecordError, Condition, Message, Reading, Record
+from gcs.mcap_file.copier import Source, new_record
+from gcs.mcap_file.errors import BadRecordError
+from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Record, Schema
+from gcs.mcap_file.index_check import wrong_with_index
+from gcs.mcap_file.reader import Progress, Reading
 
 SMALL_BYTES = 1_000_000
 """Smaller files open at once as they are."""
@@ -48,7 +48,7 @@ class Compaction:
     bytes_after: int
 
 
-def compact(path: Path, progress: Callable[[Condition], None] | None = None) -> Compaction:
+def compact(path: Path, progress: Progress | None = None) -> Compaction:
     """Rewrite `path`; its messages, their order, and its time of change stay the same.
 
     Raises NotCompactedError, BadRecordError and OSError; the file is then as it was.
@@ -105,15 +105,13 @@ class _Digest:
                 pass
 
 
-def _rewrite(path: Path, copy: Path, progress: Callable[[Condition], None] | None) -> _Digest:
-    reading, source = Reading(path), Source()
+def _rewrite(path: Path, copy: Path, progress: Progress | None) -> _Digest:
+    reading, source = Reading(path, progress), Source()
     digest, topics = _Digest(), dict[int, bytes]()
     with new_record(copy) as target:
-        for number, record in enumerate(reading):
+        for record in reading:
             digest.add(record, topics)
             source.copy(record, target)
-            if progress is not None and number % 4096 == 0:
-                progress(reading.condition)
         condition = reading.condition
         if not condition.closed or condition.damaged or source.orphans:
             raise NotCompactedError("it is not whole: gcs log recover")

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
-from mcap.records import Attachment, Channel, Metadata, Schema
 
-from gcs.record.copying import Source, Target, new_record
+from gcs.mcap_file.copier import Source, Target, new_record
+from gcs.mcap_file.format import Message, Record
+from gcs.mcap_file.reader import Progress, Reading
 from gcs.record.info import read_info
-from gcs.record.reading import Condition, Message, Reading
 
 _EVENTS = re.compile(r"/mavlink/|/link/|/session/input$|/gate/(decision|goals)$|/log$|/events?$")
 """Topics whose messages are events: what happened before the cut is not repeated in it."""
-
-Progress = Callable[[Condition], None]
 
 
 class NotInRecordError(Exception):
@@ -60,12 +57,10 @@ def cut(
     Raises NotInRecordError, BadRecordError, and OSError (FileExistsError where `target` exists).
     """
     cutter = _Cutter(from_s, to_s)
-    reading = Reading(source)
+    reading = Reading(source, progress)
     with new_record(target) as made:
-        for number, record in enumerate(reading):
+        for record in reading:
             cutter.take(record, made)
-            if progress is not None and number % 4096 == 0:
-                progress(reading.condition)
         if cutter.first_ns is None:
             raise NotInRecordError("there is no message in it", "gcs log info tells what it holds")
         if not cutter.copied:
@@ -87,9 +82,7 @@ class _Cutter:
         self.last_ns = 0
         self.copied = 0
 
-    def take(
-        self, record: Schema | Channel | Message | Attachment | Metadata, made: Target
-    ) -> None:
+    def take(self, record: Record, made: Target) -> None:
         if not isinstance(record, Message):
             self._source.copy(record, made)
             return

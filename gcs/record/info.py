@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TypeAlias
 
 import msgspec
-from mcap.records import Attachment, Channel, Metadata, Schema
 
-from gcs.record.reading import Condition, Message, Reading
+from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Schema
+from gcs.mcap_file.reader import Condition, Progress, Reading
 
 GAP_NS = 1_000_000_000
 """Silence on every topic for longer than this is reported."""
@@ -91,11 +91,11 @@ class _Tally:
     last_ns: int = 0
 
 
-def read_info(path: Path, progress: Callable[[Condition], None] | None = None) -> FlightInfo:
+def read_info(path: Path, progress: Progress | None = None) -> FlightInfo:
     """Read the whole file.  Raises BadRecordError and OSError."""
-    reading = Reading(path)
+    reading = Reading(path, progress)
     survey = _Survey(str(path), reading.condition.size)
-    for number, record in enumerate(reading):
+    for record in reading:
         match record:
             case Message():
                 survey.message(record)
@@ -107,8 +107,6 @@ def read_info(path: Path, progress: Callable[[Condition], None] | None = None) -
                 survey.info.attachments.append(name)
             case Metadata(name=name, metadata=values):
                 survey.info.metadata[name] = values
-        if progress is not None and number % 4096 == 0:
-            progress(reading.condition)
     return survey.finish(reading.condition)
 
 

@@ -8,19 +8,16 @@ from __future__ import annotations
 
 import heapq
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mcap.records import Attachment, Channel, Metadata, Schema
-
-from gcs.record.copying import Source, Target, new_record
-from gcs.record.reading import Condition, Message, Reading
+from gcs.mcap_file.copier import Source, Target, new_record
+from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Schema
+from gcs.mcap_file.reader import Reading
 
 _PART = re.compile(r"_part[0-9]+$")
 _OF_A_VEHICLE = re.compile(r"/vehicle/([0-9]+)/")
-
-Progress = Callable[[Path, Condition], None]
 
 
 class SameVehicleError(Exception):
@@ -49,13 +46,7 @@ def session_of(path: Path) -> str:
     return _PART.sub("", path.stem)
 
 
-def merge(
-    sources: Sequence[Path],
-    target: Path,
-    *,
-    prefixed: bool = False,
-    progress: Progress | None = None,
-) -> Merged:
+def merge(sources: Sequence[Path], target: Path, *, prefixed: bool = False) -> Merged:
     """Write all messages of `sources` into the new file `target`, each attachment once.
 
     `prefixed`: each session's topics begin with its name.  Without, two sessions with a vehicle
@@ -67,13 +58,11 @@ def merge(
         attached: set[tuple[str, bytes | tuple[tuple[str, str], ...]]] = set()
         streams = [each.messages(number, made, attached) for number, each in enumerate(inputs)]
         owners: dict[int, _Input] = {}
-        for count, (_, number, message) in enumerate(heapq.merge(*streams)):
+        for _, number, message in heapq.merge(*streams):
             source = inputs[number]
             channel = source.channel_in(made, message, owners)
             if channel is not None:
                 made.message(channel, message)
-            if progress is not None and count % 4096 == 0:
-                progress(source.path, source.reading.condition)
     return Merged(
         made.messages,
         made.seconds,

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
-from gcs.record.copying import Source, new_record
-from gcs.record.reading import Condition, Reading
+from gcs.mcap_file.copier import Source, new_record
+from gcs.mcap_file.reader import Condition, Progress, Reading
 
 
 @dataclass(slots=True)
@@ -26,23 +25,19 @@ class Recovery:
     """From the first recovered message to the last."""
 
 
-def recover(
-    source: Path, target: Path, progress: Callable[[Condition], None] | None = None
-) -> Recovery:
+def recover(source: Path, target: Path, progress: Progress | None = None) -> Recovery:
     """Copy all that can be read of `source` into the new file `target`, indexes and all.
 
     `progress` is called now and then.  Raises BadRecordError, and OSError (FileExistsError where
     `target` exists).
     """
-    reading = Reading(source)
+    reading = Reading(source, progress)
     found = Source()
     with closing(iter(reading)) as records:
         first = next(records, None)  # no target is made for a source that is no MCAP
         with new_record(target) as made:
-            for number, record in enumerate(chain([first] if first else [], records)):
+            for record in chain([first] if first else [], records):
                 found.copy(record, made)
-                if progress is not None and number % 4096 == 0:
-                    progress(reading.condition)
     return Recovery(
         reading.condition,
         made.messages,

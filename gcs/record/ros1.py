@@ -18,7 +18,7 @@ from functools import cache
 from struct import Struct
 from typing import TypeAlias
 
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 from gcs.report import Direction
 from gcs.wire.dialect import ENUMS, MESSAGES, FieldDef, MessageDef
 

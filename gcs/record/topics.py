@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 from gcs.report import RecordItem
 
 INPUT_TOPIC = "/session/input"

@@ -17,10 +17,18 @@ from pathlib import Path
 from typing import TypeAlias
 from zlib import crc32
 
+from gcs.mcap_file.writer import (
+    Backend,
+    Channel,
+    GuardedFile,
+    Log,
+    NoFile,
+    Opener,
+    best_backend,
+    open_exclusive,
+)
 from gcs.record import ros1
-from gcs.record.backend import Backend, Channel, Log, best_backend
 from gcs.record.derived import Derived
-from gcs.record.guarded_file import GuardedFile, NoFile, Opener, open_exclusive
 from gcs.record.recorder_status import RecordLost, RecordNews, RecordResumed, RecordRotated
 from gcs.record.rotation import NEVER, Rotation
 from gcs.record.seals import PartBegan, Seal

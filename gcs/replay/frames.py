@@ -7,10 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import IO
 
-from mcap.records import Channel
-
+from gcs.mcap_file.format import Channel, Message, Record
 from gcs.record import ros1
-from gcs.record.reading import Message, Record
 from gcs.report import Direction
 from gcs.wire.frame import msgid_in
 

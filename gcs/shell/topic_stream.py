@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from gcs import ipc
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 from gcs.shell.recording import Recording
 
 Tell = Callable[[bytes, int, bool], None]

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from mcap.records import Channel, Schema
-
-from gcs.record.reading import Message, Record
+from gcs.mcap_file.format import Channel, Message, Record, Schema
 from gcs.topics.topic import Heard, Topic, recorded_topic
 
 

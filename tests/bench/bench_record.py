@@ -23,9 +23,15 @@ from pathlib import Path
 
 from pymavlink.dialects.v20 import all as dialect
 
+from gcs.mcap_file.writer import (
+    Backend,
+    FoxgloveBackend,
+    GuardedFile,
+    Log,
+    McapBackend,
+    open_exclusive,
+)
 from gcs.record import ros1
-from gcs.record.backend import Backend, FoxgloveBackend, Log, McapBackend
-from gcs.record.guarded_file import GuardedFile, open_exclusive
 from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem
 from gcs.wire.frame import msgid_in

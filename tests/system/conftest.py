@@ -11,7 +11,7 @@ import gcs
 from gcs.audit.audit import audit
 from gcs.audit.files import sessions
 from gcs.audit.turns import NoStartError
-from gcs.record.reading import BadRecordError
+from gcs.mcap_file.errors import BadRecordError
 from gcs.shell.environment import environment
 
 

@@ -12,8 +12,9 @@ import pytest
 
 from gcs.exit_codes import ExitCode
 from gcs.live.program import Opened, Wanted, opened_by
+from gcs.mcap_file.format import Message
+from gcs.mcap_file.reader import Reading
 from gcs.operator.errors import ExitError
-from gcs.record.reading import Message, Reading
 from tests.system.station import Station, simulated
 from tests.system.viewer import Viewer, viewer
 

@@ -23,7 +23,7 @@ def write_beside(log_path: str) -> list[Written]:
 def _write_layout(record: Path) -> Written | None:
     import json
 
-    from gcs.record.reading import BadRecordError
+    from gcs.mcap_file.errors import BadRecordError
     from gcs.record.viewer.layout import layout_for
 
     path = record.with_suffix(".layout.json")
@@ -37,7 +37,7 @@ def _write_layout(record: Path) -> Written | None:
 def _write_report(record: Path) -> Written | None:
     from gcs.flight_report.render import page
     from gcs.flight_report.scan import scan
-    from gcs.record.reading import BadRecordError
+    from gcs.mcap_file.errors import BadRecordError
 
     path = record.with_suffix(".html")
     try:

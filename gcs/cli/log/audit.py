@@ -22,7 +22,7 @@ from gcs.operator.errors import ExitError
 if TYPE_CHECKING:
     from gcs.audit.audit import AuditResult, Difference
     from gcs.audit.files import SessionFiles
-    from gcs.record.reading import Condition
+    from gcs.mcap_file.reader import Condition
     from gcs.wire.signing import SecretKey
 
 _PROGRESS_FROM_BYTES = 500_000

@@ -21,7 +21,7 @@ TARGET = click.Path(dir_okay=False, path_type=Path)
 @contextmanager
 def told(source: Path) -> Iterator[None]:
     """What can be wrong with a log becomes one sentence and exit 4."""
-    from gcs.logfile.errors import BadLogError
+    from gcs.mcap_file.errors import BadLogError
 
     try:
         yield

@@ -28,8 +28,8 @@ def import_log(file: Path, output: Path, as_json: bool) -> None:
     """
     import json
 
-    from gcs.logfile.batch_writer import BatchWriter
     from gcs.logfile.imports.formats import importer_of
+    from gcs.mcap_file.batch_writer import BatchWriter
 
     with told(file):
         run = importer_of(file)

@@ -17,7 +17,7 @@ from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
-    from gcs.record.reading import Record
+    from gcs.mcap_file.format import Record
     from gcs.shell.stations import Description
     from gcs.topics.topic import Heard, Topic
 
@@ -110,7 +110,7 @@ def records_of(path: Path) -> Iterator[Record]:
     Raises ExitError.
     """
     from gcs.logfile.as_record import LogReading, is_other_log
-    from gcs.record.reading import Reading
+    from gcs.mcap_file.reader import Reading
 
     with told(path):
         records = iter(LogReading(path) if is_other_log(path) else Reading(path))
@@ -167,7 +167,7 @@ def _of_station(described: Description, past: Callable[[Heard], None] | None) ->
     A subscription over its socket is told at most ten times a second and MAVLink only; its record
     has everything, a second later at most, and costs the station nothing.
     """
-    from gcs.record.following import Following
+    from gcs.mcap_file.reader import Following
     from gcs.topics.recorded import RecordedTopics
 
     path, joined = _record_of(described), False

@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.logfile.checksums import Bytes, rows_at
 from gcs.logfile.frames import Frames
+from gcs.mcap_file.chunk_reader import Bytes, rows_at
 from gcs.wire.dialect import FieldDef, MessageDef
 
 Records: TypeAlias = "NDArray[np.void]"

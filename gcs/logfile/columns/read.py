@@ -7,14 +7,19 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from mcap.opcode import Opcode
-from mcap.records import Channel
 
 from gcs.logfile import tlog
-from gcs.logfile.checksums import Bytes, Index, rows_at
-from gcs.logfile.chunks import MESSAGE_BYTES, MESSAGE_HEAD, Chunk, ChunkFile
 from gcs.logfile.columns.layout import Records, fill_payload, record_type, records
-from gcs.record.reading import MAGIC
+from gcs.mcap_file.chunk_reader import (
+    MESSAGE_BYTES,
+    MESSAGE_HEAD,
+    Bytes,
+    Chunk,
+    ChunkFile,
+    Index,
+    rows_at,
+)
+from gcs.mcap_file.format import MAGIC, Channel, Opcode
 from gcs.record.ros1 import FRAME_BYTES, PAYLOAD_LENGTH_KEY
 from gcs.wire.dialect import MESSAGES_BY_NAME, MessageDef
 
@@ -44,7 +49,7 @@ def columns(
     wrong checksum are left out, a frame's time is the 8 bytes before it, and the order is that of
     the file; in an .mcap frames that were sent and that were refused count as those received.
 
-    Raises KeyError for a message that the dialect lacks, `BadLogError` (gcs.logfile.errors) for a
+    Raises KeyError for a message that the dialect lacks, `BadLogError` (gcs.mcap_file.errors) for a
     file that is neither, and OSError.
     """
     definition = MESSAGES_BY_NAME[name]

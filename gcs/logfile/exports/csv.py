@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from gcs.logfile.batch_writer import Sink
 from gcs.logfile.columns.layout import Records
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.tables import tables_of
+from gcs.mcap_file.batch_writer import Sink
+from gcs.mcap_file.errors import BadLogError
 
 
 def export_csv(

@@ -7,8 +7,8 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from gcs.logfile.batch_writer import Sink
 from gcs.logfile.exports.track import Track
+from gcs.mcap_file.batch_writer import Sink
 
 
 def write_kml(title: str, tracks: list[Track], target: Sink) -> None:

@@ -13,14 +13,22 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from mcap.records import Channel
 
-from gcs.logfile.batch_writer import Sink
-from gcs.logfile.checksums import Bytes, Index, rows_at
-from gcs.logfile.chunks import MESSAGE_BYTES, MESSAGE_HEAD, Chunk, ChunkFile, heads_of
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.imports.result import METADATA
 from gcs.logfile.tlog import STAMP_BYTES
+from gcs.mcap_file.batch_writer import Sink
+from gcs.mcap_file.chunk_reader import (
+    MESSAGE_BYTES,
+    MESSAGE_HEAD,
+    Bytes,
+    Chunk,
+    ChunkFile,
+    Index,
+    heads_of,
+    rows_at,
+)
+from gcs.mcap_file.errors import BadLogError
+from gcs.mcap_file.format import Channel
 from gcs.record import ros1
 from gcs.report import Direction
 from gcs.wire.frame import HEADER_V1, HEADER_V2

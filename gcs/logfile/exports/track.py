@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.logfile.columns.layout import Records
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.tables import Table, tables_of
+from gcs.mcap_file.errors import BadLogError
 
 PERIOD_NS = 200_000_000
 """Of what comes more often than 5 times a second, one a period is kept."""

@@ -17,14 +17,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.logfile.batch_writer import BatchWriter
-from gcs.logfile.checksums import Index, rows_at
 from gcs.logfile.columns.layout import Records
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.imports.dataflash_vehicle import told
 from gcs.logfile.imports.flight import import_flight
 from gcs.logfile.imports.result import Imported
 from gcs.logfile.packed import TIME_FIELD
+from gcs.mcap_file.batch_writer import BatchWriter
+from gcs.mcap_file.chunk_reader import Index, rows_at
+from gcs.mcap_file.errors import BadLogError
 
 _HEAD = b"\xa3\x95"
 _HEAD_BYTES = 3

@@ -12,12 +12,12 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from gcs.logfile import packed
-from gcs.logfile.batch_writer import BatchWriter, Loose, Rows
-from gcs.logfile.checksums import Index
 from gcs.logfile.columns.layout import Records
 from gcs.logfile.imports.result import METADATA, Imported
 from gcs.logfile.imports.vehicle import ReportedVehicle
 from gcs.logfile.packed import TIME_FIELD
+from gcs.mcap_file.batch_writer import BatchWriter, Loose, Rows
+from gcs.mcap_file.chunk_reader import Index
 from gcs.record import ros1
 from gcs.record.derived import Derived
 from gcs.report import RecordItem

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
 
-from gcs.logfile.batch_writer import BatchWriter
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.formats import Format, format_of
 from gcs.logfile.imports.result import Imported
 from gcs.logfile.imports.tlog import import_tlog
+from gcs.mcap_file.batch_writer import BatchWriter
+from gcs.mcap_file.errors import BadLogError
 
 Progress: TypeAlias = Callable[[int], None] | None
 Import: TypeAlias = Callable[[Path, BatchWriter, Progress], Imported]

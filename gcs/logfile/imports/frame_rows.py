@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gcs.logfile.batch_writer import BatchWriter, Rows, Times
-from gcs.logfile.checksums import Bytes, Index, rows_at
 from gcs.logfile.frames import Frames
+from gcs.mcap_file.batch_writer import BatchWriter, Rows, Times
+from gcs.mcap_file.chunk_reader import Bytes, Index, rows_at
 from gcs.record import ros1
 from gcs.record.writer import MAX_FRAME_CHANNELS
 from gcs.wire.frame import HEADER_V2

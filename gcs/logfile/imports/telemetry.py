@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gcs.logfile.batch_writer import Times
-from gcs.logfile.checksums import Bytes, Index
 from gcs.logfile.columns.layout import Records, records
 from gcs.logfile.frames import Frames
 from gcs.logfile.imports.vehicle import ReportedVehicle
+from gcs.mcap_file.batch_writer import Times
+from gcs.mcap_file.chunk_reader import Bytes, Index
 from gcs.protocol.autopilot import autopilot_of
 from gcs.report import RecordItem
 from gcs.wire.dialect import MESSAGES, MESSAGES_BY_NAME

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from gcs.logfile.batch_writer import BatchWriter, Loose, Rows, Times, strictly_increasing
 from gcs.logfile.frames import Mask, Small
 from gcs.logfile.imports.frame_rows import FrameRows
 from gcs.logfile.imports.result import METADATA, Imported
 from gcs.logfile.imports.telemetry import Telemetry
 from gcs.logfile.tlog import STAMP_BYTES, Gap, Window, read_windows
+from gcs.mcap_file.batch_writer import BatchWriter, Loose, Rows, Times, strictly_increasing
 from gcs.record import ros1
 from gcs.record.derived import Derived
 from gcs.wire.dialect import MESSAGES

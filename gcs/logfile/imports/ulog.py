@@ -18,13 +18,13 @@ from typing import Any
 
 import numpy as np
 
-from gcs.logfile.batch_writer import BatchWriter
 from gcs.logfile.columns.layout import Records
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.imports.flight import import_flight
 from gcs.logfile.imports.result import Imported
 from gcs.logfile.imports.ulog_vehicle import PARAMETERS, TEXTS, told
 from gcs.logfile.packed import TIME_FIELD
+from gcs.mcap_file.batch_writer import BatchWriter
+from gcs.mcap_file.errors import BadLogError
 
 DROPOUTS = "dropouts"
 _HEADER_BYTES = 16

@@ -5,7 +5,7 @@ from __future__ import annotations
 from foxglove import Schema
 from foxglove.messages import Timestamp
 
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 
 
 def channel(topic: str, schema: Schema) -> Channel:

@@ -14,7 +14,7 @@ from typing import ClassVar
 from foxglove.messages import Pose, PoseInFrame, Quaternion, SceneUpdate, Vector3
 
 from gcs.frames import Vec3, enu_from_ned
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 from gcs.record.derived.drawing import Rgb, ball, color, entity, label, line
 from gcs.record.derived.foxglove_channel import channel, stamp
 from gcs.record.derived.gate_json import request_text

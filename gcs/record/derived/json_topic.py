@@ -13,7 +13,7 @@ from typing import TypeAlias
 import msgspec
 from msgspec import inspect
 
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 from gcs.record.topics import Out
 
 encode = msgspec.json.Encoder().encode

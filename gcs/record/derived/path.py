@@ -9,7 +9,7 @@ from typing import ClassVar
 from foxglove.messages import Pose, PosesInFrame, Vector3
 
 from gcs.frames import enu_from_ned
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 from gcs.record.derived.drawing import NO_TURN
 from gcs.record.derived.foxglove_channel import channel, stamp
 from gcs.record.derived.trail import Trail

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from foxglove.messages import LocationFix, LocationFixPositionCovarianceType
 
-from gcs.record.backend import Channel
+from gcs.mcap_file.writer import Channel
 from gcs.record.derived.body_frames import FrameNames
 from gcs.record.derived.foxglove_channel import channel, stamp
 from gcs.record.topics import Deriver, Grid, Out

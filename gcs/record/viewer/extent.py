@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import cos, degrees, dist, radians
 from pathlib import Path
 
 import msgspec
-from mcap.records import Channel
 
 from gcs.frames import Vec3
-from gcs.record.reading import Condition, Message, Reading
+from gcs.mcap_file.format import Channel, Message
+from gcs.mcap_file.reader import Progress, Reading
 from gcs.report import FenceItem, FenceShape
 
 EARTH_RADIUS_M = 6_371_000.0
@@ -75,14 +75,13 @@ _state = msgspec.json.Decoder(_State)
 _fence = msgspec.json.Decoder(FenceItem)
 
 
-def survey(path: Path, progress: Callable[[Condition], None] | None = None) -> Survey:
+def survey(path: Path, progress: Progress | None = None) -> Survey:
     """Read the whole file.  Raises BadRecordError and OSError; what does not decode is left out."""
-    reading = Reading(path)
     topics: dict[int, str] = {}
     track: list[Vec3] = []
     fence: FenceItem | None = None
     frames = b""
-    for number, record in enumerate(reading):
+    for record in Reading(path, progress):
         if isinstance(record, Channel):
             topics[record.id] = record.topic
         elif isinstance(record, Message):
@@ -93,8 +92,6 @@ def survey(path: Path, progress: Callable[[Condition], None] | None = None) -> S
                 fence = _fence_of(record.data) or fence
             elif topic == "/tf_static":
                 frames = record.data
-        if progress is not None and number % 4096 == 0:
-            progress(reading.condition)
     suffixed = frozenset(int(one) for one in _SUFFIXED.findall(frames))
     return Survey(frozenset(topics.values()), extent_of(track, fence), suffixed)
 

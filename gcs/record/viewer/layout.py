@@ -6,11 +6,11 @@ made only where the record has what it shows, so no panel comes up with an alert
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from gcs.record.reading import Condition
+from gcs.mcap_file.reader import Progress
 from gcs.record.viewer.extent import Extent, survey
 from gcs.record.viewer.panel_config import Config, Json
 from gcs.record.viewer.panel_scene import Body
@@ -47,7 +47,7 @@ _CAGE = Extent((-5.0, -5.0, 0.0), (5.0, 5.0, 2.0))
 def layout_for(
     path: Path | None,
     purpose: Purpose = "one",
-    progress: Callable[[Condition], None] | None = None,
+    progress: Progress | None = None,
 ) -> Config:
     """The layout for a record, fitted to it; without one, for any flight.
 

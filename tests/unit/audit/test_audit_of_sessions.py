@@ -21,10 +21,9 @@ from gcs.audit.messages import Stored, Tape
 from gcs.audit.turns import NoStartError
 from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
+from gcs.mcap_file.writer import Backend, FoxgloveBackend, McapBackend, RawFile, open_exclusive
 from gcs.policy_file import load_policy
 from gcs.record import writer
-from gcs.record.backend import Backend, FoxgloveBackend, McapBackend
-from gcs.record.guarded_file import RawFile, open_exclusive
 from gcs.record.writer import Recorder
 from gcs.session.effects import Effect
 from gcs.session.inputs import (

@@ -21,8 +21,8 @@ from gcs.flight_report.summary import (
     what_went_wrong,
 )
 from gcs.flight_report.topics import read_log_line, source_of
+from gcs.mcap_file.errors import BadRecordError
 from gcs.record import ros1
-from gcs.record.reading import BadRecordError
 from gcs.report import (
     AttachmentItem,
     DecisionItem,

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gcs
-from gcs.logfile.errors import BadLogError
+from gcs.mcap_file.errors import BadLogError
 from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem
 from gcs.wire.dialect import MESSAGES_BY_NAME

@@ -18,7 +18,7 @@ from mcap_ros1.decoder import DecoderFactory
 from pymavlink.dialects.v20 import all as dialect
 
 import gcs
-from gcs.logfile.errors import BadLogError
+from gcs.mcap_file.errors import BadLogError
 from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem, GarbageItem
 from tests.sample_files import elsewhere

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs.logfile.errors import BadLogError
 from gcs.logfile.tlog import WINDOW_BYTES, read_windows
+from gcs.mcap_file.errors import BadLogError
 from tests.sample_files import elsewhere
 from tests.shares import one_in
 from tests.unit.logfile.tlogs import START_US, flight, read_by_pymavlink, stamped, unknown, write

@@ -11,7 +11,8 @@ from mcap.records import Channel
 from pymavlink.dialects.v20 import all as dialect
 from pymavlink.generator.mavcrc import x25crc
 
-from gcs.record.reading import MAGIC, RECORD_HEAD, Message, Reading
+from gcs.mcap_file.format import MAGIC, RECORD_HEAD, Message
+from gcs.mcap_file.reader import Reading
 from gcs.record.writer import Recorder
 from gcs.report import (
     AttachmentItem,

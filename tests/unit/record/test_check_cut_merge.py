@@ -14,8 +14,9 @@ from mcap.reader import make_reader
 from mcap.records import Attachment, Metadata
 from mcap.writer import Writer
 
+from gcs.mcap_file.errors import BadRecordError
+from gcs.mcap_file.reader import Reading
 from gcs.record.check import check
-from gcs.record.reading import BadRecordError, Reading
 from gcs.record.rotation import Rotation
 from gcs.record.writer import Recorder
 from gcs.report import ParamItem, PoseItem

@@ -11,10 +11,11 @@ import pytest
 from mcap.reader import make_reader
 from mcap.records import Attachment, Metadata
 
+from gcs.mcap_file.copier import CHUNK_BYTES
+from gcs.mcap_file.errors import BadRecordError
+from gcs.mcap_file.reader import Reading
 from gcs.record import compact as module
 from gcs.record.compact import NotCompactedError, compact, compact_in_background
-from gcs.record.copying import CHUNK_BYTES
-from gcs.record.reading import BadRecordError, Reading
 from gcs.record.writer import Recorder
 from tests.unit.cli.command_line import gcs
 from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from gcs.record.following import Following
-from gcs.record.reading import BadRecordError, Message, Record
+from gcs.mcap_file.errors import BadRecordError
+from gcs.mcap_file.format import Message, Record
+from gcs.mcap_file.reader import Following
 from gcs.record.writer import FLUSH_NS, Recorder
 from tests.unit.record.flights import MS, START_NS, a_flight, messages_of, position_frame
 

@@ -15,11 +15,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 
+from gcs.mcap_file.reader import Reading
+from gcs.mcap_file.writer import (
+    Channel,
+    FoxgloveBackend,
+    GuardedFile,
+    McapBackend,
+    RawFile,
+    open_exclusive,
+)
 from gcs.record import ros1, writer
-from gcs.record.backend import Channel, FoxgloveBackend, McapBackend
 from gcs.record.derived import Derived
-from gcs.record.guarded_file import GuardedFile, RawFile, open_exclusive
-from gcs.record.reading import Reading
 from gcs.record.recorder_status import RecordLost, RecordResumed, RecordRotated
 from gcs.record.rotation import Rotation
 from gcs.record.topics import INPUT_TOPIC, Out
@@ -213,7 +219,7 @@ def test_without_an_sdk_the_readings_and_frames_are_still_recorded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("gcs.record.derived.find_spec", lambda _: None)
-    monkeypatch.setattr("gcs.record.backend.find_spec", lambda _: None)
+    monkeypatch.setattr("gcs.mcap_file.writer.find_spec", lambda _: None)
     path = record(tmp_path, a_flight())
     topics = {message.topic for message in messages_of(path)}
     assert {"/mavlink/1/1/LOCAL_POSITION_NED", "/vehicle/1/state", "/gate/decision"} <= topics

@@ -20,9 +20,10 @@ from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap.records import Attachment
 
+from gcs.mcap_file.errors import BadRecordError
+from gcs.mcap_file.reader import Reading
 from gcs.record import ros1
 from gcs.record.check import check
-from gcs.record.reading import BadRecordError, Reading
 from gcs.record.recover import recover
 from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem

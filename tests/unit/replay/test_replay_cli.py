@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs.exit_codes import ExitCode
-from gcs.record.reading import BadRecordError, Reading
+from gcs.mcap_file.errors import BadRecordError
+from gcs.mcap_file.reader import Reading
 from gcs.replay.frames import vehicle_frames
 from gcs.report import Direction, FrameItem
 from tests.unit.cli.command_line import gcs

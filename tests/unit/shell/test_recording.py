@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from gcs.record.guarded_file import RawFile, open_exclusive
+from gcs.mcap_file.writer import RawFile, open_exclusive
 from gcs.record.writer import Recorder
 from gcs.report import AttachmentItem, Direction, FramesItem, InputItem, PoseItem, RecordItem
 from gcs.session.inputs import Datagram, RecorderChanged, RecorderGrew

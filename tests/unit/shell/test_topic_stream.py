@@ -9,7 +9,8 @@ import pytest
 from mcap.records import Channel, Schema
 
 from gcs import ipc
-from gcs.record.reading import Message, Reading
+from gcs.mcap_file.format import Message
+from gcs.mcap_file.reader import Reading
 from gcs.record.writer import Recorder
 from gcs.shell.recording import Recording
 from gcs.shell.topic_stream import NO_RECORD, TopicStream

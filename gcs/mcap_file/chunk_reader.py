@@ -2,8 +2,7 @@
 
 Nothing is done message by message in Python: an index tells where the messages of a channel are,
 and numpy takes them from there.  A file that was never closed has no summary: its chunks are
-found from its beginning, and each is walked through.  Formats: the MCAP specification,
-https://mcap.dev/spec.
+found from its beginning, and each is walked through.
 """
 
 from __future__ import annotations
@@ -18,15 +17,26 @@ from typing import BinaryIO, NamedTuple, TypeAlias
 import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
-from mcap.opcode import Opcode
-from mcap.records import Channel, Footer, Metadata, MetadataIndex, Schema
+from mcap.records import Footer, MetadataIndex
 from numpy.typing import NDArray
 
-from gcs.logfile.checksums import Bytes, Index, rows_at
-from gcs.logfile.errors import BadLogError
-from gcs.record.reading import MAGIC
+from gcs.mcap_file.errors import BadRecordError
+from gcs.mcap_file.format import (
+    MAGIC,
+    RECORD_HEAD,
+    UNREADABLE,
+    Channel,
+    Metadata,
+    Opcode,
+    Schema,
+    inflate,
+    parse,
+    whole_records,
+)
 
-RECORD = struct.Struct("<BQ")
+Bytes = NDArray[np.uint8]
+Index = NDArray[np.int64]
+
 MESSAGE_HEAD = np.dtype(
     [
         ("opcode", "u1"),
@@ -38,18 +48,16 @@ MESSAGE_HEAD = np.dtype(
     ]
 )
 """A Message record up to its data."""
-MESSAGE_BYTES = MESSAGE_HEAD.itemsize - RECORD.size
+MESSAGE_BYTES = MESSAGE_HEAD.itemsize - RECORD_HEAD.size
 """What a Message record without data says as its length."""
-MAX_CHUNK_BYTES = 128 << 20
-"""A chunk that says that it is larger is damaged."""
+ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
+"""Of one message in the index of a chunk."""
 
-_CHUNK = struct.Struct("<QQQII")
 _CHUNK_INDEX = struct.Struct("<QQQQI")
 _INDEX = struct.Struct("<HI")
 _LENGTH = struct.Struct("<Q")
 _CHANNEL_ID = struct.Struct("<H")
-_FOOTER_BYTES = RECORD.size + 20
-_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
+_FOOTER_BYTES = RECORD_HEAD.size + 20
 _INDEX_PLACE = struct.Struct("<HQ")
 """Channel, and the place of its index in the file."""
 
@@ -77,7 +85,7 @@ class _Place(NamedTuple):
 class ChunkFile:
     """One MCAP file, in order: `for chunk in ChunkFile(path).chunks()`.
 
-    Raises BadLogError where the file is no MCAP, and OSError.
+    Raises BadRecordError where the file is no MCAP, and OSError.
     """
 
     def __init__(self, path: Path) -> None:
@@ -93,9 +101,9 @@ class ChunkFile:
         self._places: list[_Place] = []
         with open(path, "rb") as file:
             if not self.size:
-                raise BadLogError(path, "the file is empty")
+                raise BadRecordError(path, "the file is empty")
             if file.read(len(MAGIC)) != MAGIC:
-                raise BadLogError(path, "not an MCAP file (wrong first bytes)")
+                raise BadRecordError(path, "not an MCAP file (wrong first bytes)")
             self._read_summary(file)
 
     def chunks(self, wanted: Wanted | None = None) -> Iterator[Chunk]:
@@ -112,12 +120,12 @@ class ChunkFile:
         tail = file.read()
         if len(tail) != _FOOTER_BYTES + len(MAGIC) or tail[0] != Opcode.FOOTER:
             return
-        footer = Footer.read(ReadDataStream(BytesIO(tail[RECORD.size :])))
+        footer = Footer.read(ReadDataStream(BytesIO(tail[RECORD_HEAD.size :])))
         if not tail.endswith(MAGIC) or not len(MAGIC) <= footer.summary_start < start:
             return
         file.seek(footer.summary_start)
         summary = file.read(start - footer.summary_start)
-        for opcode, at, end in _records(summary):
+        for opcode, at, end in whole_records(summary):
             if opcode == Opcode.CHUNK_INDEX:
                 self._place(summary[at:end])
             elif opcode == Opcode.METADATA_INDEX:
@@ -143,9 +151,9 @@ class ChunkFile:
         except (McapError, struct.error, UnicodeDecodeError):
             self.damaged += 1
             return
-        if RECORD.size < index.length <= self.size and index.offset <= self.size:
-            file.seek(index.offset + RECORD.size)
-            self._learn(Opcode.METADATA, file.read(index.length - RECORD.size))
+        if RECORD_HEAD.size < index.length <= self.size and index.offset <= self.size:
+            file.seek(index.offset + RECORD_HEAD.size)
+            self._learn(Opcode.METADATA, file.read(index.length - RECORD_HEAD.size))
 
     def _by_summary(self, file: BinaryIO, wanted: Wanted | None) -> Iterator[Chunk]:
         chosen = {n for n, each in self.channels.items() if wanted is None or wanted(each)}
@@ -157,7 +165,7 @@ class ChunkFile:
             whole = place.chunk_bytes + place.index_bytes
             read = file.read(min(whole, self.size - place.start))
             self.read_bytes = place.start + len(read)
-            data = self._unpack(read[RECORD.size : place.chunk_bytes])
+            data = self._unpack(read[RECORD_HEAD.size : place.chunk_bytes])
             if data is None:
                 continue
             offsets: dict[int, Index] = {}
@@ -174,9 +182,9 @@ class ChunkFile:
     def _in_order(self, file: BinaryIO) -> Iterator[Chunk]:
         position = len(MAGIC)
         file.seek(position)
-        while position + RECORD.size <= self.size:
-            opcode, length = RECORD.unpack(file.read(RECORD.size))
-            position += RECORD.size + length
+        while position + RECORD_HEAD.size <= self.size:
+            opcode, length = RECORD_HEAD.unpack(file.read(RECORD_HEAD.size))
+            position += RECORD_HEAD.size + length
             if position > self.size:
                 self.damaged += 1
                 break
@@ -186,7 +194,7 @@ class ChunkFile:
                 if data is not None:
                     yield self._walk(data)
             elif opcode == Opcode.MESSAGE:
-                loose = RECORD.pack(opcode, length) + file.read(length)
+                loose = RECORD_HEAD.pack(opcode, length) + file.read(length)
                 yield self._walk(np.frombuffer(loose, np.uint8))
             elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA):
                 self._learn(opcode, file.read(length))
@@ -199,41 +207,46 @@ class ChunkFile:
         """Learn the schemas and channels, and find the messages, record by record."""
         found: dict[int, list[int]] = {}
         raw = data.tobytes()
-        for opcode, start, end in _records(raw):
+        for opcode, start, end in whole_records(raw):
             if opcode != Opcode.MESSAGE:
                 self._learn(opcode, raw[start:end])
             elif end - start >= MESSAGE_BYTES:
                 (channel,) = _CHANNEL_ID.unpack_from(raw, start)
-                found.setdefault(channel, []).append(start - RECORD.size)
+                found.setdefault(channel, []).append(start - RECORD_HEAD.size)
         return Chunk(data, {n: np.array(each, np.int64) for n, each in found.items()})
 
     def _unpack(self, body: bytes) -> Bytes | None:
-        """The records of a chunk; None if it is damaged."""
-        try:
-            _, _, size, _, name_length = _CHUNK.unpack_from(body)
-            name_end = _CHUNK.size + name_length
-            records = _decompress(body[_CHUNK.size : name_end], body[name_end + 8 :], size)
-        except (struct.error, ValueError):
-            records = None
+        """The records of a chunk; None if it is damaged; its checksum is not looked at."""
+        records = inflate(body, checked=False)
         if records is None:
             self.damaged += 1
             return None
         return np.frombuffer(records, np.uint8)
 
     def _learn(self, opcode: int, body: bytes) -> None:
-        stream = ReadDataStream(BytesIO(body))
+        if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA):
+            return
         try:
-            if opcode == Opcode.SCHEMA:
-                schema = Schema.read(stream)
-                self.schemas[schema.id] = schema
-            elif opcode == Opcode.CHANNEL:
-                channel = Channel.read(stream)
-                self.channels[channel.id] = channel
-            elif opcode == Opcode.METADATA:
-                metadata = Metadata.read(stream)
-                self.metadata[metadata.name] = metadata.metadata
-        except (McapError, struct.error, UnicodeDecodeError):
+            record = parse(opcode, body)
+        except UNREADABLE:
             self.damaged += 1
+            return
+        match record:
+            case Schema():
+                self.schemas[record.id] = record
+            case Channel():
+                self.channels[record.id] = record
+            case Metadata():
+                self.metadata[record.name] = record.metadata
+
+
+def rows_at(data: Bytes, starts: Index, width: int) -> Bytes:
+    """`width` bytes from each of `starts`, one row each; all must lie inside `data`."""
+    if width == 0 or not len(starts):
+        return np.zeros((len(starts), width), np.uint8)
+    # A view of overlapping items, from which numpy copies whole items.
+    items = np.ndarray((len(data) - width + 1,), f"V{width}", data, 0, (1,))
+    return items[starts].view(np.uint8).reshape(len(starts), width)
 
 
 def heads_of(chunk: Chunk, starts: Index) -> NDArray[np.void]:
@@ -242,53 +255,15 @@ def heads_of(chunk: Chunk, starts: Index) -> NDArray[np.void]:
     return rows_at(chunk.data, starts, width).view(MESSAGE_HEAD).ravel()
 
 
-def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """Opcode, start and end of the body of every whole record."""
-    start = 0
-    while start + RECORD.size <= len(data):
-        opcode, length = RECORD.unpack_from(data, start)
-        start += RECORD.size
-        if start + length > len(data):
-            break
-        yield opcode, start, start + length
-        start += length
-
-
 def _index(data: bytes, at: int) -> Index | None:
     """The offsets in the Message Index record at `at`; None if there is no whole one."""
     try:
-        opcode, length = RECORD.unpack_from(data, at)
-        _, listed = _INDEX.unpack_from(data, at + RECORD.size)
+        opcode, length = RECORD_HEAD.unpack_from(data, at)
+        _, listed = _INDEX.unpack_from(data, at + RECORD_HEAD.size)
         if at < 0 or opcode != Opcode.MESSAGE_INDEX or length != listed + _INDEX.size:
             return None
-        start = at + RECORD.size + _INDEX.size
-        entries = np.frombuffer(data, _ENTRY, listed // _ENTRY.itemsize, start)
+        start = at + RECORD_HEAD.size + _INDEX.size
+        entries = np.frombuffer(data, ENTRY, listed // ENTRY.itemsize, start)
     except (struct.error, ValueError):
         return None
     return entries["offset"].astype(np.int64)
-
-
-def _decompress(name: bytes, packed: bytes, size: int) -> bytes | None:
-    """At most `size` bytes; None where that is not what comes out."""
-    if size > MAX_CHUNK_BYTES:
-        return None
-    match name:
-        case b"":
-            records: bytes = packed
-        case b"lz4":
-            import lz4.frame  # type: ignore[import-untyped]  # the package has no types
-
-            try:
-                records = lz4.frame.LZ4FrameDecompressor().decompress(packed, size)
-            except RuntimeError:  # what lz4 raises for damaged input
-                return None
-        case b"zstd":
-            import zstandard
-
-            try:
-                records = zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
-            except zstandard.ZstdError:
-                return None
-        case _:
-            return None
-    return records if len(records) == size else None

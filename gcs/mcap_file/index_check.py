@@ -9,12 +9,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from mcap.exceptions import McapError
-from mcap.opcode import Opcode
 from mcap.reader import make_reader
 from mcap.records import ChunkIndex
 from mcap.summary import Summary
 
-from gcs.record.reading import RECORD_HEAD, inflate
+from gcs.mcap_file.format import RECORD_HEAD, Opcode, inflate, whole_records
 
 _MESSAGE_HEAD = struct.Struct("<HIQ")
 _INDEX_HEAD = struct.Struct("<HI")
@@ -92,10 +91,7 @@ def _body(data: mmap.mmap, at: int, opcode: Opcode) -> bytes | None:
 
 def _message_heads(records: bytes) -> Iterator[tuple[int, tuple[int, int]]]:
     """Where each message begins, and its channel and log_time."""
-    at = 0
-    while at + RECORD_HEAD.size <= len(records):
-        opcode, length = RECORD_HEAD.unpack_from(records, at)
-        if opcode == Opcode.MESSAGE and at + RECORD_HEAD.size + length <= len(records):
-            channel_id, _, log_time_ns = _MESSAGE_HEAD.unpack_from(records, at + RECORD_HEAD.size)
-            yield at, (channel_id, log_time_ns)
-        at += RECORD_HEAD.size + length
+    for opcode, start, _ in whole_records(records):
+        if opcode == Opcode.MESSAGE:
+            channel_id, _, log_time_ns = _MESSAGE_HEAD.unpack_from(records, start)
+            yield start - RECORD_HEAD.size, (channel_id, log_time_ns)

@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from mcap.records import Attachment, Channel, Metadata, Schema
 from mcap.writer import CompressionType, Writer
 
-from gcs.record.reading import Message
+from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Record, Schema
 
 CHUNK_BYTES = 1024 * 1024
 """Of a file that is written at leisure: a small index, quickly searched.  The recorder's own are
@@ -118,9 +117,7 @@ class Source:
             number = self._targets[channel.id] = target.channel(channel, self.schema_of(channel))
         return number
 
-    def copy(
-        self, record: Schema | Channel | Message | Attachment | Metadata, target: Target
-    ) -> None:
+    def copy(self, record: Record, target: Target) -> None:
         """Whatever the record is, it goes to `target`."""
         match record:
             case Message():

@@ -1,8 +1,7 @@
 """Writes an MCAP from many messages at a time: rows of numpy arrays, put in place without a loop.
 
 The recorder of a flight (`gcs/record/writer.py`) writes each message as it comes and may be killed
-at any time; this one is for files that are made of finished logs.  Formats: the MCAP specification,
-https://mcap.dev/spec.
+at any time; this one is for files that are made of finished logs.
 """
 
 from __future__ import annotations
@@ -17,18 +16,15 @@ import lz4.frame  # type: ignore[import-untyped]  # the package has no types
 import numpy as np
 from mcap import records
 from mcap.data_stream import RecordBuilder
-from mcap.opcode import Opcode
 from numpy.typing import NDArray
 
-from gcs.logfile.checksums import Bytes, Index
-from gcs.logfile.chunks import MESSAGE_BYTES, MESSAGE_HEAD, RECORD
-from gcs.record.backend import Channel
-from gcs.record.reading import MAGIC
+from gcs.mcap_file.chunk_reader import ENTRY, MESSAGE_BYTES, MESSAGE_HEAD, Bytes, Index
+from gcs.mcap_file.format import MAGIC, RECORD_HEAD, Opcode
+from gcs.mcap_file.writer import Channel
 
 CHUNK_BYTES = 1 << 20
 _HEAD_BYTES = MESSAGE_HEAD.itemsize
 _INDEX = struct.Struct("<BQHI")
-_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
 
 Times = NDArray[np.int64]
 
@@ -184,7 +180,7 @@ class BatchWriter:
         )
         summary = (statistics, *self._chunks, *self._attachments, *self._metadata)
         written = self._known.getvalue() + b"".join(map(_bytes_of, summary))
-        footer = RECORD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", summary_start, 0)
+        footer = RECORD_HEAD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", summary_start, 0)
         crc = zlib.crc32(footer, zlib.crc32(written))
         self._put(written + footer + struct.pack("<I", crc) + MAGIC)
 
@@ -219,7 +215,7 @@ class BatchWriter:
             channel = int(channels[group[0]])
             places[channel] = self._position
             self._counts[channel] = self._counts.get(channel, 0) + len(group)
-            entries = np.empty(len(group), _ENTRY)
+            entries = np.empty(len(group), ENTRY)
             entries["time"], entries["offset"] = log_ns[group], offsets[group]
             size = entries.nbytes
             self._put(

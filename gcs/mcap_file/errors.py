@@ -13,3 +13,7 @@ class BadLogError(Exception):
         self.path = path
         self.reason = reason
         self.hint = hint
+
+
+class BadRecordError(BadLogError):
+    """The file is no MCAP, or none that can be read."""
