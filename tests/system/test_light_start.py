@@ -30,7 +30,7 @@ RARE = (
     "vehicle_sim.engine.batch_engine",
     "vehicle_sim.flight_log.px4",
     "vehicle_sim.flight_log.ardupilot",
-    "vehicle_sim.services.event_definitions",
+    "vehicle_sim.services.events.event_definitions",
     "hashlib",
     "vehicle_sim.numerics.lanes",
     "vehicle_sim.testing",

@@ -79,7 +79,7 @@ def test_a_room_is_pure_where_it_is_not_named(room: str, imports: ImportGraph) -
         ("libraries", "gcs.gate.machine.turn", "click"),
         ("cores", "gcs.vehicle.decisions", "gcs.shell.loop"),
         ("cores", "gcs.bridge.routing", "gcs.record.writer"),
-        ("cores", "vehicle_sim.services.info", "vehicle_sim.shell.runtime"),
+        ("cores", "vehicle_sim.services.telemetry.info", "vehicle_sim.shell.runtime"),
         ("wordless", "gcs.gate.machine.gate", "gcs.ipc"),
         ("record", "gcs.record.writer", "gcs.station.session"),
         ("inside", "gcs.tui.app", "gcs.station.session"),

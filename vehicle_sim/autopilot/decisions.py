@@ -9,17 +9,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_sim.autopilot.arming_requests import ArmingRequests
-from vehicle_sim.autopilot.battery_monitor import BatteryMonitor
 from vehicle_sim.autopilot.bounds import Bounds
-from vehicle_sim.autopilot.camera_requests import CameraRequests
 from vehicle_sim.autopilot.control.airflow import Airflow
 from vehicle_sim.autopilot.failsafe_actions import FailsafeActions
 from vehicle_sim.autopilot.fault_injection import FaultInjection
 from vehicle_sim.autopilot.flight_state import FlightState
-from vehicle_sim.autopilot.health_checks import HealthChecks
+from vehicle_sim.autopilot.health.battery_monitor import BatteryMonitor
+from vehicle_sim.autopilot.health.health_checks import HealthChecks
 from vehicle_sim.autopilot.interface import HomeChanged
-from vehicle_sim.autopilot.mode_changes import ModeChanges
+from vehicle_sim.autopilot.requests.arming import ArmingRequests
+from vehicle_sim.autopilot.requests.camera import CameraRequests
+from vehicle_sim.autopilot.requests.mode_changes import ModeChanges
 from vehicle_sim.autopilot.task_flight import TaskFlight
 from vehicle_sim.engine.step import DT_NS, GUIDE_EVERY
 

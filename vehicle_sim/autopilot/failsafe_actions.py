@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from math import ceil
 
 from vehicle_sim.autopilot.acting_failsafe import ActingFailsafe
-from vehicle_sim.autopilot.battery_monitor import BatteryMonitor
 from vehicle_sim.autopilot.bounds import Bounds
 from vehicle_sim.autopilot.control.demands import Situation
 from vehicle_sim.autopilot.failsafes.failsafe import (
@@ -26,7 +25,8 @@ from vehicle_sim.autopilot.failsafes.failsafe import (
 from vehicle_sim.autopilot.failsafes.failsafe_checks import Cleared, FailsafeChecks, FailsafeEvent
 from vehicle_sim.autopilot.failsafes.failure_detector import FailureDetector
 from vehicle_sim.autopilot.flight_state import FlightState
-from vehicle_sim.autopilot.health_checks import HealthChecks
+from vehicle_sim.autopilot.health.battery_monitor import BatteryMonitor
+from vehicle_sim.autopilot.health.health_checks import HealthChecks
 from vehicle_sim.autopilot.modes import Mode
 from vehicle_sim.autopilot.parameters.parameters import Quantity
 from vehicle_sim.autopilot.tasks.descend import Descend

@@ -7,11 +7,7 @@ exception is the mission: it is a task that modes fly, and may change the mode i
 from __future__ import annotations
 
 from vehicle_sim.autopilot.acting_failsafe import ActingFailsafe
-from vehicle_sim.autopilot.arming_requests import ArmingRequests
-from vehicle_sim.autopilot.battery_monitor import BatteryMonitor
 from vehicle_sim.autopilot.bounds import Bounds
-from vehicle_sim.autopilot.calibration_requests import CalibrationRequests
-from vehicle_sim.autopilot.camera_requests import CameraRequests
 from vehicle_sim.autopilot.control.airflow import Airflow
 from vehicle_sim.autopilot.decisions import Decisions, turn_of
 from vehicle_sim.autopilot.failsafe_actions import FailsafeActions
@@ -21,20 +17,24 @@ from vehicle_sim.autopilot.failsafes.failsafe_checks import FailsafeChecks
 from vehicle_sim.autopilot.failsafes.failure_detector import FAILURE_DETECTORS
 from vehicle_sim.autopilot.failsafes.px4_failsafes import Px4Failsafes
 from vehicle_sim.autopilot.fault_injection import FaultInjection
-from vehicle_sim.autopilot.flight_requests import FlightRequests
 from vehicle_sim.autopilot.flight_state import FlightState
-from vehicle_sim.autopilot.health_checks import HealthChecks
+from vehicle_sim.autopilot.health.battery_monitor import BatteryMonitor
+from vehicle_sim.autopilot.health.health_checks import HealthChecks
+from vehicle_sim.autopilot.health.mission_checks import MissionChecks
 from vehicle_sim.autopilot.manual.sticks import Radio
-from vehicle_sim.autopilot.manual_input import ManualInput
 from vehicle_sim.autopilot.mission.mission import Mission
-from vehicle_sim.autopilot.mission_checks import MissionChecks
-from vehicle_sim.autopilot.mission_requests import MissionRequests
-from vehicle_sim.autopilot.mission_support import MissionSupport
-from vehicle_sim.autopilot.mode_changes import ModeChanges
 from vehicle_sim.autopilot.mode_tasks import ModeTasks
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.autopilot.orbit_follow_requests import OrbitFollowRequests
-from vehicle_sim.autopilot.output_requests import OutputRequests
+from vehicle_sim.autopilot.requests.arming import ArmingRequests
+from vehicle_sim.autopilot.requests.calibration import CalibrationRequests
+from vehicle_sim.autopilot.requests.camera import CameraRequests
+from vehicle_sim.autopilot.requests.flight import FlightRequests
+from vehicle_sim.autopilot.requests.manual_input import ManualInput
+from vehicle_sim.autopilot.requests.mission import MissionRequests
+from vehicle_sim.autopilot.requests.mission_support import MissionSupport
+from vehicle_sim.autopilot.requests.mode_changes import ModeChanges
+from vehicle_sim.autopilot.requests.orbit_follow import OrbitFollowRequests
+from vehicle_sim.autopilot.requests.outputs import OutputRequests
 from vehicle_sim.autopilot.task_flight import TaskFlight
 from vehicle_sim.autopilot.tasks.follow import Leader
 from vehicle_sim.autopilot.tasks.guided import SetpointStream

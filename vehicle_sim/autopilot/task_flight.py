@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from vehicle_sim.autopilot.control.demands import Situation, Task
 from vehicle_sim.autopilot.failsafes.arming import AutoDisarm
 from vehicle_sim.autopilot.flight_state import FlightState
+from vehicle_sim.autopilot.health.mission_checks import MissionChecks
 from vehicle_sim.autopilot.mission.mission import Mission
-from vehicle_sim.autopilot.mission_checks import MissionChecks
 from vehicle_sim.autopilot.modes import Behaviour
 from vehicle_sim.autopilot.parameters.parameters import Quantity
 from vehicle_sim.autopilot.tasks.tasks import Hold, TakeOff, face

@@ -8,7 +8,7 @@ from math import pi
 from vehicle_sim.autopilot.acting_failsafe import ActingFailsafe
 from vehicle_sim.autopilot.control.flight_control import heading_of
 from vehicle_sim.autopilot.flight_state import FlightState
-from vehicle_sim.autopilot.health_checks import HealthChecks
+from vehicle_sim.autopilot.health.health_checks import HealthChecks
 from vehicle_sim.autopilot.interface import (
     AttitudeGoal,
     Estimate,

@@ -26,17 +26,16 @@ from vehicle_sim.flight_log.log_directory import LogDirectory
 from vehicle_sim.flight_log.recorder import Recorder
 from vehicle_sim.services import param_pack
 from vehicle_sim.services.clocks import ping, timesync
-from vehicle_sim.services.commands import Commands
-from vehicle_sim.services.events import EventServer
-from vehicle_sim.services.ftp import FtpServer
-from vehicle_sim.services.info import Info
+from vehicle_sim.services.commands.commands import Commands
+from vehicle_sim.services.commands.operator_control import OperatorControl, with_operator_control
+from vehicle_sim.services.commands.ports import CommandContext
+from vehicle_sim.services.events.events import EventServer
+from vehicle_sim.services.events.metadata import metadata_of
+from vehicle_sim.services.ftp.ftp import FtpServer
 from vehicle_sim.services.logs import LogServer
 from vehicle_sim.services.manual import manual_input
-from vehicle_sim.services.metadata import metadata_of
-from vehicle_sim.services.mission import MissionServer
-from vehicle_sim.services.operator_control import OperatorControl, with_operator_control
+from vehicle_sim.services.missions.mission import MissionServer
 from vehicle_sim.services.parameters import ParameterServer
-from vehicle_sim.services.ports import CommandContext
 from vehicle_sim.services.profile import Profile
 from vehicle_sim.services.setpoints import (
     BadSetpointError,
@@ -46,7 +45,8 @@ from vehicle_sim.services.setpoints import (
 )
 from vehicle_sim.services.stream_sets import Change, LinkMode, StreamSets, unasked
 from vehicle_sim.services.streams import NEVER, Streams
-from vehicle_sim.services.telemetry import heartbeat
+from vehicle_sim.services.telemetry.info import Info
+from vehicle_sim.services.telemetry.telemetry import heartbeat
 from vehicle_sim.services.texts import in_chunks, status_text
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m

@@ -9,8 +9,8 @@ from tests.unit.failsafes.ground import box, point, said
 from vehicle_sim.autopilot.interface import PlanItem
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.effects import Client, Send
-from vehicle_sim.services.mission import MissionServer
-from vehicle_sim.services.plan_items import to_int
+from vehicle_sim.services.missions.mission import MissionServer
+from vehicle_sim.services.missions.plan_items import to_int
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import MissionResult, MissionType

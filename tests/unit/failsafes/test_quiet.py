@@ -9,7 +9,7 @@ import pytest
 from tests.unit.autopilot.flight import Flight
 from tests.unit.failsafes.ground import box, fenced
 from vehicle_sim.autopilot.fence.geofence import Crossing
-from vehicle_sim.autopilot.health_checks import HealthChecks
+from vehicle_sim.autopilot.health.health_checks import HealthChecks
 from vehicle_sim.autopilot.modes import Personality
 
 S = 1_000_000_000

@@ -9,7 +9,7 @@ import pytest
 from tests.unit.faults.stage import INJECT, Stage, aloft, far
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
-from vehicle_sim.services.failures import FAILURES, Type, Unit
+from vehicle_sim.services.commands.failures import FAILURES, Type, Unit
 from vehicle_sim.wire import messages as m
 
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")

@@ -18,7 +18,7 @@ from vehicle_sim.flight_log.log_directory import LogDirectory
 from vehicle_sim.flight_log.recorder import Recorder
 from vehicle_sim.numerics.vectors import Vec3
 from vehicle_sim.services.profile import PROFILES
-from vehicle_sim.services.telemetry import STATE
+from vehicle_sim.services.telemetry.telemetry import STATE
 from vehicle_sim.storage.store import MemoryStore, Store
 from vehicle_sim.wire import messages as m
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from vehicle_sim.effects import Client, Effect, Send
-from vehicle_sim.services.ftp import FtpServer
-from vehicle_sim.services.ftp_wire import Nak, Opcode, Reply
+from vehicle_sim.services.ftp.ftp import FtpServer
+from vehicle_sim.services.ftp.wire import Nak, Opcode, Reply
 from vehicle_sim.storage.store import MemoryStore
 from vehicle_sim.storage.virtual_files import VirtualFiles
 from vehicle_sim.wire import messages as m

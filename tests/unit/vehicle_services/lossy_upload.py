@@ -8,7 +8,7 @@ from typing import TypeAlias
 from tests.unit.vehicle_services.fake_vehicle import FakeVehicle
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.effects import Client, Send
-from vehicle_sim.services.mission import MissionServer
+from vehicle_sim.services.missions.mission import MissionServer
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.simulation.impairment import Air, Direction, Impairment
 from vehicle_sim.wire import messages as m

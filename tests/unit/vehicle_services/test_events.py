@@ -12,9 +12,9 @@ import pytest
 
 from tests.unit.vehicle_services.fake_vehicle import HEALTHY, Bench, S, long
 from vehicle_sim.autopilot.interface import FenceState, StatusText
-from vehicle_sim.services.events import FIRST_SEQUENCE, KEPT
-from vehicle_sim.services.health_report import Checked, report
-from vehicle_sim.services.px4_events import Modes, event_of
+from vehicle_sim.services.events.events import FIRST_SEQUENCE, KEPT
+from vehicle_sim.services.events.health_report import Checked, report
+from vehicle_sim.services.events.px4_events import Modes, event_of
 from vehicle_sim.services.stream_sets import POSITION_ONLY, same_on_all
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd

@@ -13,7 +13,7 @@ from tests.unit.vehicle_services.ftp_client import (
     refused,
 )
 from vehicle_sim.effects import Client
-from vehicle_sim.services.ftp_wire import Nak, Opcode
+from vehicle_sim.services.ftp.wire import Nak, Opcode
 from vehicle_sim.storage.store import StoreError, StoreFault, put
 from vehicle_sim.storage.virtual_files import Virtual
 

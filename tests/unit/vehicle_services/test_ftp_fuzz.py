@@ -10,8 +10,8 @@ import pytest
 from tests.unit.vehicle_services.ftp_client import MS, frame
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.effects import Client, Send
-from vehicle_sim.services.ftp import FtpServer
-from vehicle_sim.services.ftp_wire import Opcode
+from vehicle_sim.services.ftp.ftp import FtpServer
+from vehicle_sim.services.ftp.wire import Opcode
 from vehicle_sim.services.param_pack import PATH, param_pack
 from vehicle_sim.shell.files import DiskStore
 from vehicle_sim.storage.store import MemoryStore, Store, put

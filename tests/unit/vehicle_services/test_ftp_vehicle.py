@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tests.unit.vehicle_services.fake_vehicle import Bench, S, acks, long
 from tests.unit.vehicle_services.ftp_client import frame, refused, understood
-from vehicle_sim.services.ftp_wire import Nak, Opcode
+from vehicle_sim.services.ftp.wire import Nak, Opcode
 from vehicle_sim.wire import messages as m
 
 

@@ -7,9 +7,9 @@ from struct import calcsize
 
 from tests.unit.vehicle_services.test_events import TEXTS
 from vehicle_sim.autopilot.parameters.parameters import Parameters
-from vehicle_sim.services.health_report import Checked, report
-from vehicle_sim.services.metadata import GENERAL_PATH, metadata_of
-from vehicle_sim.services.px4_events import Modes, PX4Event, event_of
+from vehicle_sim.services.events.health_report import Checked, report
+from vehicle_sim.services.events.metadata import GENERAL_PATH, metadata_of
+from vehicle_sim.services.events.px4_events import Modes, PX4Event, event_of
 from vehicle_sim.storage.store import crc32_of
 
 METADATA = metadata_of("px4")

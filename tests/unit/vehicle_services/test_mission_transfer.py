@@ -19,7 +19,7 @@ from tests.unit.vehicle_services.test_missions import asked_for, count, item, re
 from vehicle_sim.autopilot.interface import PlanItem
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.effects import Client
-from vehicle_sim.services.plan_items import as_ardupilot_gives_back, from_float, to_float
+from vehicle_sim.services.missions.plan_items import as_ardupilot_gives_back, from_float, to_float
 from vehicle_sim.services.profile import PROFILES
 from vehicle_sim.simulation.impairment import Impairment
 from vehicle_sim.wire import messages as m

@@ -8,9 +8,9 @@ import pytest
 
 from tests.unit.vehicle_services.fake_vehicle import FakeVehicle
 from vehicle_sim.autopilot.interface import FenceState
-from vehicle_sim.services import sensor_telemetry as build
 from vehicle_sim.services.profile import PROFILES, Profile
-from vehicle_sim.services.sys_status import sys_status
+from vehicle_sim.services.telemetry import sensors as build
+from vehicle_sim.services.telemetry.sys_status import sys_status
 from vehicle_sim.wire.ids import EkfFlag, EstimatorFlag, Sensor
 
 PX4, ARDUPILOT = PROFILES["px4"], PROFILES["ardupilot"]

@@ -1,0 +1,1 @@
+"""What the vehicle makes of its own state: before arming, and for the failsafes in flight."""
