@@ -1,20 +1,30 @@
 """`gcs log layout`: what a Foxglove viewer should show, in the classic `configById` format.
 
-A layout cannot travel inside an MCAP, and without one a viewer shows next to nothing.  A panel is
-made only where the record has what it shows, so no panel comes up with an alert.
+A layout cannot travel inside an MCAP, and without one a viewer shows next to nothing.  The
+template `layout.json` beside this file has what each kind of panel is configured with, and for
+each purpose the panels and how they share the window.  Here it is filled in:
+
+    a panel         name, title, and the path of a value, or lines of [path, label]; a third word
+                    `points` = not joined, for what comes in stretches: a line would run across gaps
+    {first} {each}  topics of the first vehicle; the same line again for every vehicle
+    a|b             b in a record that has no topic a
+    $name           a value, of the path, the lines or `panel_scene.py`
+
+A panel is made only where the record has what it shows, so no panel comes up with an alert.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import json
+from collections.abc import Collection, Mapping, Sequence
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from gcs.mcap_file.reader import Progress
 from gcs.record.viewer.extent import Extent, survey
-from gcs.record.viewer.panel_config import Config, Json
-from gcs.record.viewer.panel_scene import Body
-from gcs.record.viewer.panels import Line, Panels
+from gcs.record.viewer.panel_scene import Body, scene, street_map
 
 Purpose: TypeAlias = Literal["one", "fleet", "lab"]
 PURPOSES: tuple[Purpose, ...] = ("one", "fleet", "lab")
@@ -45,10 +55,8 @@ _CAGE = Extent((-5.0, -5.0, 0.0), (5.0, 5.0, 2.0))
 
 
 def layout_for(
-    path: Path | None,
-    purpose: Purpose = "one",
-    progress: Progress | None = None,
-) -> Config:
+    path: Path | None, purpose: Purpose = "one", progress: Progress | None = None
+) -> dict[str, Any]:
     """The layout for a record, fitted to it; without one, for any flight.
 
     Raises BadRecordError and OSError.
@@ -64,163 +72,98 @@ def layout(
     purpose: Purpose = "one",
     extent: Extent | None = None,
     suffixed: Collection[int] = (),
-) -> Config:
+) -> dict[str, Any]:
     """The layout for a record with these topics, ready for `json.dumps`.
 
     `extent` is what the camera, the grid and the map fit; without it the camera follows.
     `suffixed` are the vehicles whose frames carry their number; without it all but the first.
     """
-    panels = Panels(frozenset(topics))
+    template = _template()
     numbers = _vehicles(topics)
     suffixed = suffixed or numbers[1:]
     bodies = [Body(n, f"base_link_{n}" if n in suffixed else "base_link") for n in numbers]
-    match purpose:
-        case "one":
-            tree = _one(panels, bodies[:1], extent)
-        case "fleet":
-            tree = _fleet(panels, bodies, extent)
-        case "lab":
-            tree = _lab(panels, bodies[:1])
+    if purpose != "fleet":
+        del bodies[1:]
+    if purpose == "lab":
+        extent = _CAGE
+    filler = _Filler(frozenset(topics), bodies, extent)
+    panels: dict[str, Any] = {}
+    for name, title, *shown in template[purpose]["panels"]:
+        kind = name.split("!")[0]
+        values = filler.values(kind, shown)
+        if values is not None:
+            config = _filled(template["kinds"][kind], values)
+            more = values.get("more", {})
+            both = {"foxglovePanelTitle": title, "lichtblickPanelTitle": title}
+            panels[name] = {**config, **more, **both}
     return {
-        "configById": panels.configs,
+        "configById": panels,
         "globalVariables": {},
         "userNodes": {},
         "playbackConfig": {"speed": 1},
-        "layout": tree or "",
+        "layout": _tree(template[purpose]["tree"], panels) or "",
     }
 
 
-def _one(panels: Panels, bodies: Sequence[Body], extent: Extent | None) -> Json:
-    base = f"/vehicle/{bodies[0].sysid}"
-    flight = panels.scene(
-        "3D!main", "Flight", bodies, extent, "follow" if extent is None else "fit"
-    )
-    chase = panels.scene("3D!chase", "Chase", bodies, extent, "chase")
-    left = _split("column", 64, flight, _split("row", 50, chase, panels.map(bodies, extent)))
-    plots = _column(
-        panels.plot("Plot!height", "Height above the local origin [m]", _heights(base)),
-        panels.plot("Plot!speed", "Speed [m/s]", _speeds(base)),
-        panels.plot("Plot!attitude", "Attitude [deg]", _angles(base)),
-    )
-    battery = panels.plot(
-        "Plot!battery",
-        "Battery",
-        [Line(f"{base}/state.battery_pct", "left [%]"), Line(f"{base}/state.battery_v", "volts")],
-    )
-    now = _column(
-        panels.indicator(_gate_path(panels, base, "state")), _gauge(panels, base), battery
-    )
-    last = panels.messages("RawMessages!decision", "Last decision", "/gate/decision")
-    beside = _column(_conditions(panels, base), last)
-    words = _column(_requests(panels), _split("row", 60, panels.log(), beside))
-    right = _split("column", 52, _split("row", 36, now, plots), words)
-    return _split("column", 80, _split("row", 58, left, right), _states(panels, bodies))
+@cache
+def _template() -> dict[str, Any]:
+    text = (files("gcs.record.viewer") / "layout.json").read_text(encoding="utf-8")
+    made: dict[str, Any] = json.loads(text)
+    return made
 
 
-def _fleet(panels: Panels, bodies: Sequence[Body], extent: Extent | None) -> Json:
-    flight = panels.scene(
-        "3D!main", "Flight", bodies, extent, "follow" if extent is None else "fit"
-    )
-    left = _split("column", 68, flight, panels.map(bodies, extent))
-    plots = _column(
-        panels.plot(
-            "Plot!height",
-            "Height above each local origin [m]",
-            [Line(f"/vehicle/{b.sysid}/state.up_m", f"vehicle {b.sysid}") for b in bodies],
-        ),
-        panels.plot(
-            "Plot!speed",
-            "Ground speed [m/s]",
-            [
-                Line(f"/vehicle/{b.sysid}/state.groundspeed_mps", f"vehicle {b.sysid}")
-                for b in bodies
-            ],
-        ),
-        panels.plot(
-            "Plot!battery",
-            "Battery [%]",
-            [Line(f"/vehicle/{b.sysid}/state.battery_pct", f"vehicle {b.sysid}") for b in bodies],
-        ),
-    )
-    right = _split("column", 55, plots, _column(_requests(panels), panels.log()))
-    states = panels.states(
-        "StateTransitions!phase",
-        "States",
-        [(f"/vehicle/{b.sysid}/phase.state", f"vehicle {b.sysid}") for b in bodies],
-    )
-    return _split("column", 78, _split("row", 60, left, right), states)
+class _Filler:
+    """What one record puts into the template."""
+
+    def __init__(
+        self, topics: Collection[str], bodies: Sequence[Body], extent: Extent | None
+    ) -> None:
+        self._topics = topics
+        self._bodies = bodies
+        self._extent = extent
+
+    def values(self, kind: str, shown: list[Any]) -> dict[str, Any] | None:
+        """By their names in the template; None where the record has nothing of it."""
+        if kind == "3D":
+            return scene(self._bodies, self._topics, self._extent, shown[0])
+        if kind == "map":
+            return street_map(self._bodies, self._topics, self._extent)
+        if isinstance(shown[0], str):
+            path = self._path(shown[0], self._bodies[0])
+            return {"path": path} if self._has(path) else None
+        bars, lines = [], []
+        for one, label, *points in shown:
+            for body in self._bodies if "{each}" in one else self._bodies[:1]:
+                path = self._path(one, body)
+                if self._has(path):
+                    named = label.replace("{n}", str(body.sysid))
+                    bar = {"value": path, "label": named, "enabled": True}
+                    bar["timestampMethod"] = "receiveTime"
+                    bars.append(bar)
+                    lines.append({**bar, "showLine": not points})
+        return {"bars": bars, "lines": lines} if bars else None
+
+    def _path(self, paths: str, body: Body) -> str:
+        """The first of them whose topic is there, or else the last."""
+        base = f"/vehicle/{body.sysid}"
+        choice = paths.replace("{first}", base).replace("{each}", base).split("|")
+        return next(filter(self._has, choice), choice[-1])
+
+    def _has(self, path: str) -> bool:
+        """Whether the topic of a message path (topic.field.field) is there."""
+        return path.split(".")[0] in self._topics
 
 
-def _lab(panels: Panels, bodies: Sequence[Body]) -> Json:
-    """The cage of 10 x 10 x 2 m, and where the vehicle is in it beside where it was sent."""
-    base = f"/vehicle/{bodies[0].sysid}"
-    cage = panels.scene("3D!main", "Cage", bodies, _CAGE, "fit")
-    axes = [("east", "x"), ("north", "y"), ("up", "z")]
-    plots = _column(
-        *(
-            panels.plot(
-                f"Plot!{name}",
-                f"{name.capitalize()} [m]",
-                [
-                    Line(f"{base}/state.{name}_m", "is"),
-                    Line(f"{base}/setpoint.pose.position.{axis}", "setpoint", joined=False),
-                ],
-            )
-            for name, axis in axes
-        )
-    )
-    words = _column(
-        panels.indicator(_gate_path(panels, base, "state")), _requests(panels), panels.log()
-    )
-    right = _split("row", 50, plots, words)
-    return _split("column", 80, _split("row", 50, cage, right), _states(panels, bodies))
-
-
-def _heights(base: str) -> list[Line]:
-    setpoint = Line(f"{base}/setpoint.pose.position.z", "setpoint", joined=False)
-    return [Line(f"{base}/state.up_m", "up"), setpoint]
-
-
-def _speeds(base: str) -> list[Line]:
-    return [
-        Line(f"{base}/state.groundspeed_mps", "ground"),
-        Line(f"{base}/state.climb_mps", "climb"),
-    ]
-
-
-def _angles(base: str) -> list[Line]:
-    return [Line(f"{base}/state.{name}_deg", name) for name in ("roll", "pitch", "yaw")]
-
-
-def _gauge(panels: Panels, base: str) -> Json:
-    """A gauge has no number of its own."""
-    number = panels.messages("RawMessages!battery", "Battery [%]", f"{base}/state.battery_pct")
-    return _split("row", 60, panels.gauge(f"{base}/state.battery_pct"), number)
-
-
-def _requests(panels: Panels) -> Json:
-    return panels.table("Table!requests", "Requests", "/gate/requests.rows")
-
-
-def _conditions(panels: Panels, base: str) -> Json:
-    return panels.table("Table!conditions", "What is wrong", f"{base}/fsa.conditions")
-
-
-def _states(panels: Panels, bodies: Sequence[Body]) -> Json:
-    base = f"/vehicle/{bodies[0].sysid}"
-    mode = f"{base}/phase.mode" if panels.has(f"{base}/phase") else f"{base}/state.mode"
-    rows = [
-        (_gate_path(panels, base, "state"), "gate"),
-        (mode, "flight mode"),
-        (_gate_path(panels, base, "severity"), "severity"),
-    ]
-    return panels.states("StateTransitions!phase", "States", rows)
-
-
-def _gate_path(panels: Panels, base: str, name: str) -> str:
-    """As it stood for a while; in a record of before there was such a topic, as it was."""
-    leaf = "phase" if panels.has(f"{base}/phase") else "fsa"
-    return f"{base}/{leaf}.{name}"
+def _filled(template: Any, values: Mapping[str, Any]) -> Any:
+    match template:
+        case dict():
+            return {key: _filled(inner, values) for key, inner in template.items()}
+        case list():
+            return [_filled(inner, values) for inner in template]
+        case str() if template.startswith("$"):
+            return values[template[1:]]
+        case _:
+            return template
 
 
 def _vehicles(topics: Collection[str]) -> list[int]:
@@ -234,21 +177,23 @@ def _vehicles(topics: Collection[str]) -> list[int]:
     return sorted(seen or numbers) or [1]
 
 
-def _column(*panes: Json) -> Json:
-    """One above the other, of the same height."""
-    there = [pane for pane in panes if pane is not None]
+def _tree(pane: Any, panels: Collection[str]) -> Any:
+    """Panes of `[direction, percent of the first, first, second]`, without those that are not
+    there; without a percentage all are of the same size."""
+    if isinstance(pane, str):
+        return pane if pane in panels else None
+    direction, *rest = pane
+    percent = rest.pop(0) if isinstance(rest[0], int) else None
+    there = [made for inner in rest if (made := _tree(inner, panels)) is not None]
+    return _shared(direction, percent, there)
+
+
+def _shared(direction: str, percent: int | None, there: list[Any]) -> Any:
     if len(there) < 2:
         return there[0] if there else None
-    return _split("column", round(100 / len(there)), there[0], _column(*there[1:]))
-
-
-def _split(direction: str, percent: int, first: Json, second: Json) -> Json:
-    """Two panes, or the one that there is."""
-    if first is None or second is None:
-        return first if second is None else second
     return {
         "direction": direction,
-        "splitPercentage": percent,
-        "first": first,
-        "second": second,
+        "splitPercentage": round(100 / len(there)) if percent is None else percent,
+        "first": there[0],
+        "second": _shared(direction, percent, there[1:]),
     }

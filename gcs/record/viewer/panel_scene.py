@@ -1,17 +1,18 @@
-"""The configuration of the 3D and the map panel: camera, grid, and how each topic is drawn."""
+"""What the 3D and the map panel show: camera, grid, and how each topic is drawn.
+
+The values are those that `layout.json` names.  What it publishes there is for a live view, where a
+click in the panel is a goal (`gcs/live/clicked_goals.py`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from math import cos, floor, log2, log10, radians
-from typing import Literal
+from typing import Any, Literal
 
-from gcs.frames import Vec3
 from gcs.record.viewer.extent import Extent
-from gcs.record.viewer.panel_config import Config, Json
 
-BACKGROUND = "#1d2430"
 FOLLOW_DISTANCE_M = 30.0
 CHASE_DISTANCE_M = 9.0
 DISTANCE_PER_RADIUS = 2.2
@@ -48,57 +49,50 @@ def scene(
     bodies: Sequence[Body],
     topics: Collection[str],
     extent: Extent | None,
-    camera: Literal["fit", "follow", "chase"],
-) -> Config | None:
+    camera: Literal["fit", "chase"],
+) -> dict[str, Any] | None:
     """None where the record has nothing to draw.
 
-    fit: on `extent`; follow, chase: the camera goes with the first vehicle and keeps its
-    direction (`follow-pose` would roll the horizon, and only Foxglove has `follow-heading`).
+    fit: on `extent`, and follow where there is none; follow, chase: the camera goes with the first
+    vehicle and keeps its direction (`follow-pose` would roll the horizon, and only Foxglove has
+    `follow-heading`).
     """
-    width_m = 0.06 if extent is None else min(1.0, max(0.04, 0.006 * extent.radius_m))
-    shown = _topics(bodies, width_m if camera == "fit" else 0.06)
-    drawn: Config = {
-        topic: {"visible": True, **settings} for topic, settings in shown.items() if topic in topics
+    fits = camera == "fit" and extent is not None
+    width_m = min(1.0, max(0.04, 0.006 * extent.radius_m)) if fits and extent else 0.06
+    drawn = {
+        topic: {"visible": True, **settings}
+        for topic, settings in _topics(bodies, width_m).items()
+        if topic in topics
     }
     if not drawn:
         return None
-    frames: Config = {"frame:local_ned": {"visible": False}, "frame:map": {"visible": True}}
+    frames = {"frame:local_ned": {"visible": False}, "frame:map": {"visible": True}}
     for body in bodies:
         frames[f"frame:{body.frd}"] = {"visible": False}
-        frames[f"frame:{body.frame}"] = {"visible": camera == "follow"}
-    follows = camera != "fit"
+        frames[f"frame:{body.frame}"] = {"visible": camera == "fit" and not fits}
+    centre, distance_m = (0.0, 0.0, 0.0), FOLLOW_DISTANCE_M
+    if camera == "chase":
+        distance_m = CHASE_DISTANCE_M
+    elif extent is not None:
+        centre, distance_m = extent.centre_enu, DISTANCE_PER_RADIUS * extent.radius_m
     return {
-        "cameraState": _camera(extent, camera),
-        "followMode": "follow-position" if follows else "follow-none",
-        "followTf": bodies[0].frame if follows and bodies else "map",
-        "scene": {
-            "backgroundColor": BACKGROUND,
-            "transforms": {
-                "axisScale": 1,
-                "showLabel": False,
-                "lineWidth": 0,
-                "labelSize": 0.1,
-                "enablePreloading": True,
-                "maxPreloadMessages": 50000,
-            },
-        },
-        "transforms": frames,
-        "topics": drawn,
-        "layers": {"grid": grid(extent)},
-        # Live, a click in the panel is a goal (gcs/live/clicked_goals.py).
-        "publish": {
-            "type": "point",
-            "poseTopic": "/move_base_simple/goal",
-            "pointTopic": "/clicked_point",
-        },
+        "distance": round(distance_m, 1),
+        "phi": 65 if camera == "chase" else 58,
+        "centre": [round(metres, 2) for metres in centre],
+        "far": max(5000, round(20 * distance_m)),
+        "follow_mode": "follow-none" if fits else "follow-position",
+        "follow_frame": "map" if fits else bodies[0].frame,
+        "frames": frames,
+        "drawn": drawn,
+        **_grid(extent),
     }
 
 
-def _topics(bodies: Sequence[Body], line_width_m: float) -> dict[str, Config]:
-    shown: dict[str, Config] = {"/geofence": {}, "/mission": {}, "/gate/goals": {}}
+def _topics(bodies: Sequence[Body], line_width_m: float) -> dict[str, dict[str, Any]]:
+    shown: dict[str, dict[str, Any]] = {"/geofence": {}, "/mission": {}, "/gate/goals": {}}
     for number, body in enumerate(bodies):
         base = f"/vehicle/{body.sysid}"
-        gradient: list[Json] = [*_GRADIENTS[number % len(_GRADIENTS)]]
+        gradient = [*_GRADIENTS[number % len(_GRADIENTS)]]
         shown[f"{base}/model"] = {}
         shown[f"{base}/path"] = {"type": "line", "lineWidth": line_width_m, "gradient": gradient}
         shown[f"{base}/target"] = {}
@@ -108,45 +102,17 @@ def _topics(bodies: Sequence[Body], line_width_m: float) -> dict[str, Config]:
     return shown
 
 
-def _camera(extent: Extent | None, camera: Literal["fit", "follow", "chase"]) -> Config:
-    centre: Vec3 = (0.0, 0.0, 0.0)
-    distance_m = CHASE_DISTANCE_M if camera == "chase" else FOLLOW_DISTANCE_M
-    if camera == "fit" and extent is not None:
-        centre, distance_m = extent.centre_enu, DISTANCE_PER_RADIUS * extent.radius_m
-    return {
-        "distance": round(distance_m, 1),
-        "perspective": True,
-        "phi": 65 if camera == "chase" else 58,
-        "thetaOffset": 30,
-        "target": [0, 0, 0],
-        "targetOffset": [round(metres, 2) for metres in centre],
-        "targetOrientation": [0, 0, 0, 1],
-        "fovy": 45,
-        "near": 0.1,
-        "far": max(5000, round(20 * distance_m)),
-    }
-
-
-def grid(extent: Extent | None) -> Config:
+def _grid(extent: Extent | None) -> dict[str, Any]:
     """The ground: cells of 1, 2, 5, 10, ... m, about twenty across the flight."""
     across_m = 40.0 if extent is None else 2 * extent.radius_m
     cell_m = cell_size(across_m / 20)
     divisions = round(1.5 * across_m / cell_m / 2) * 2
     east, north, _ = (0.0, 0.0, 0.0) if extent is None else extent.centre_enu
     return {
-        "visible": True,
-        "frameLocked": True,
-        "label": f"Ground ({cell_m:g} m)",
-        "instanceId": "grid",
-        "layerId": "foxglove.Grid",
-        "frameId": "map",
+        "cell": f"Ground ({cell_m:g} m)",
         "size": divisions * cell_m,
         "divisions": divisions,
-        "lineWidth": 1,
-        "color": "#3b82f650",
         "position": [round(east / cell_m) * cell_m, round(north / cell_m) * cell_m, 0],
-        "rotation": [0, 0, 0],
-        "order": 1,
     }
 
 
@@ -158,28 +124,22 @@ def cell_size(at_least_m: float) -> float:
     )
 
 
-def street_map(bodies: Sequence[Body], topics: Collection[str], extent: Extent | None) -> Config:
-    """The map, fitted to the flight or following the first vehicle."""
-    locations = [f"/vehicle/{body.sysid}/location" for body in bodies]
-    colors: Config = {
-        topic: _COLORS[number % len(_COLORS)] for number, topic in enumerate(locations)
-    }
+def street_map(
+    bodies: Sequence[Body], topics: Collection[str], extent: Extent | None
+) -> dict[str, Any] | None:
+    """The map, fitted to the flight or following the first vehicle; None where none is known."""
+    locations = [topic for body in bodies if (topic := f"/vehicle/{body.sysid}/location") in topics]
+    if not locations:
+        return None
+    colors = {topic: _COLORS[number % len(_COLORS)] for number, topic in enumerate(locations)}
     if "/origin" in topics:
         colors["/origin"] = "#ffffff"
-    centre = extent.centre_deg if extent is not None else None
-    config: Config = {
-        "customTileUrl": "",
-        "disabledTopics": [],
-        "followTopic": "" if centre else locations[0],
-        "layer": "map",
-        "topicColors": colors,
-        "zoomLevel": ANY_ZOOM,
-        "maxNativeZoom": 18,
-    }
-    if extent is not None and centre is not None:
-        config["center"] = {"lat": round(centre[0], 7), "lon": round(centre[1], 7)}
-        config["zoomLevel"] = zoom(2 * extent.radius_m, centre[0])
-    return config
+    values = {"follow_topic": locations[0], "colors": colors, "zoom": ANY_ZOOM}
+    if extent is not None and (centre := extent.centre_deg) is not None:
+        lat_deg, lon_deg = centre
+        values |= {"follow_topic": "", "zoom": zoom(2 * extent.radius_m, lat_deg)}
+        values["more"] = {"center": {"lat": round(lat_deg, 7), "lon": round(lon_deg, 7)}}
+    return values
 
 
 def zoom(across_m: float, lat_deg: float) -> int:

@@ -109,7 +109,7 @@ def test_panels_have_no_keys_but_those_that_a_viewer_knows(purpose: Purpose) -> 
     known: dict[str, set[str]] = {"Table": {"topicPath"}}
     for name, config in example.items():
         known.setdefault(name.split("!")[0], set()).update(_keys(config))
-    for name, config in layout(any_flight(2), purpose)["configById"].items():  # type: ignore[union-attr]
+    for name, config in layout(any_flight(2), purpose)["configById"].items():
         assert _keys(config) <= known[name.split("!")[0]] | OURS, name
 
 
