@@ -6,9 +6,7 @@ from math import atan2, cos, degrees, radians, sin
 
 import msgspec
 
-from gcs.flight_report.findings.estimator import REJECTED
-from gcs.flight_report.findings.gps import HDOP_BAD
-from gcs.flight_report.findings.vibration import BAD, FAIR
+from gcs.flight_report.findings.limits import BAD, FAIR, HDOP_BAD, REJECTED
 from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.series import Series
 

@@ -8,11 +8,9 @@ from math import ceil
 
 from gcs.flight_report.facts import Battery, Cells, Fact
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
-from gcs.flight_report.findings.spells import Spells, Worst
+from gcs.flight_report.findings.limits import BATTERY_LEFT, VOLTAGE, Held
+from gcs.flight_report.findings.spells import Worst
 
-LOW = Limit(15.0, "%", "BAT_LOW_THR of a PX4 1.14")
-CRITICAL = Limit(7.0, "%", "BAT_CRIT_THR of a PX4 1.14")
-EMPTY_CELL = Limit(3.6, "V", "BAT1_V_EMPTY of a PX4 1.14, a cell under load")
 SAG = Limit(0.3, "V", "lithium polymer practice, from memory")
 """A cell, within `SAG_WINDOW_S`; PX4 expects BAT1_V_LOAD_DROP = 0.1 V of a good one."""
 SAG_WINDOW_S = 5.0
@@ -22,11 +20,8 @@ FULL_CELL_V = 4.25
 
 @dataclass(slots=True)
 class BatteryDetector:
-    low: Spells = field(default_factory=Spells)
-    critical: Spells = field(default_factory=Spells)
-    remaining: Worst = field(default_factory=lambda: Worst(-1))
-    voltage: Worst = field(default_factory=lambda: Worst(-1))
-    empty: Spells = field(default_factory=Spells)
+    remaining: Held = field(default_factory=lambda: Held(BATTERY_LEFT))
+    voltage: Held = field(default_factory=lambda: Held(VOLTAGE))
     sag: Worst = field(default_factory=Worst)
     cells: int | None = None
     cells_told: bool = False
@@ -49,17 +44,14 @@ class BatteryDetector:
             self.cells = max(1, ceil(voltage_v / FULL_CELL_V))
         if not now.armed:
             self.recent.clear()
-            for spells in (self.low, self.critical, self.empty):
-                spells.update(now.t_s, False)
+            self.remaining.rest(now.t_s)
+            self.voltage.rest(now.t_s)
             return
         if remaining_pct is not None:
             self.remaining.update(now.t_s, remaining_pct)
-            self.low.update(now.t_s, remaining_pct < LOW.value)
-            self.critical.update(now.t_s, remaining_pct < CRITICAL.value)
         if voltage_v is None or self.cells is None:
             return
-        self.voltage.update(now.t_s, voltage_v)
-        self.empty.update(now.t_s, voltage_v / self.cells < EMPTY_CELL.value)
+        self.voltage.update(now.t_s, voltage_v, judged=voltage_v / self.cells)
         while self.recent and now.t_s - self.recent[0][0] > SAG_WINDOW_S:
             self.recent.popleft()
         self.recent.append((now.t_s, voltage_v))
@@ -67,57 +59,13 @@ class BatteryDetector:
 
     def result(self, now: Situation) -> Result:
         result = Result()
-        self._remaining(result)
-        self._cells(result)
+        self.remaining.result(result)
+        lowest, cells = self.voltage.worst.value, self.cells
+        a_cell = lowest / cells if lowest is not None and cells else 0.0
+        guessed = "" if self.cells_told else " (cells guessed)"
+        self.voltage.result(result, a_cell=a_cell, cells=f"{cells}{guessed}")
         self._sag(result)
         return result
-
-    def _remaining(self, result: Result) -> None:
-        least, level = self.remaining.value, None
-        if least is not None:
-            level = Level.OK
-            for spells, limit, bad in (
-                (self.critical, CRITICAL, Level.CRITICAL),
-                (self.low, LOW, Level.WARNING),
-            ):
-                if spells.count and level is Level.OK:
-                    level = bad
-                    result.findings.append(
-                        Finding(
-                            "battery",
-                            bad,
-                            spells.first_s,
-                            f"the battery fell below {limit.value:g} %",
-                            f"down to {least:.0f} %",
-                            source=limit.source,
-                        )
-                    )
-        measured = "" if least is None else f"down to {least:.0f} %"
-        told = f"low below {LOW.value:g} %, critical below {CRITICAL.value:g} %"
-        sources = f"{LOW.source}, {CRITICAL.source}"
-        result.checks.append(Check("battery", "Battery left", measured, told, sources, level))
-
-    def _cells(self, result: Result) -> None:
-        lowest, cells = self.voltage.value, self.cells
-        measured, level = "", None
-        if lowest is not None and cells:
-            level = Level.OK
-            guessed = "" if self.cells_told else " (cells guessed)"
-            measured = f"down to {lowest:.2f} V, {lowest / cells:.2f} V a cell of {cells}{guessed}"
-            if self.empty.count:
-                level = Level.WARNING
-                result.findings.append(
-                    Finding(
-                        "battery",
-                        level,
-                        self.empty.first_s,
-                        f"the battery's cells fell below {EMPTY_CELL.value:g} V",
-                        f"{measured}; {self.empty.words}",
-                        source=EMPTY_CELL.source,
-                    )
-                )
-        told = f"at least {EMPTY_CELL.value:g} V a cell"
-        result.checks.append(Check("battery", "Voltage", measured, told, EMPTY_CELL.source, level))
 
     def _sag(self, result: Result) -> None:
         most, cells = self.sag.value, self.cells
@@ -128,15 +76,9 @@ class BatteryDetector:
             level = Level.OK
             if a_cell > SAG.value:
                 level = Level.WARNING
+                title, detail = "the battery's voltage sagged", f"by {measured}"
                 result.findings.append(
-                    Finding(
-                        "battery",
-                        level,
-                        self.sag.t_s,
-                        "the battery's voltage sagged",
-                        f"by {measured}",
-                        source=SAG.source,
-                    )
+                    Finding("battery", level, self.sag.t_s, title, detail, source=SAG.source)
                 )
         told = f"at most {SAG.value:g} V a cell"
         result.checks.append(Check("battery", "Sag", measured, told, SAG.source, level))

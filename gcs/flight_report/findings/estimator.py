@@ -1,34 +1,37 @@
-"""The estimator: how far the measurements are from what it expects."""
+"""The attitude and the estimator: how far the vehicle leant, and how far the measurements are
+from what it expects."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from gcs.flight_report.facts import Estimator, Fact
-from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
-from gcs.flight_report.findings.spells import Spells, Worst
-from gcs.flight_report.number_format import clock
+from gcs.flight_report.facts import Estimator, Fact, Pose
+from gcs.flight_report.findings.finding import Finding, Level, Result, Situation
+from gcs.flight_report.findings.limits import RATIOS, REJECTED, TILT, Held
+from gcs.flight_report.findings.spells import Spells
 
-REJECTED = {
-    "px4": Limit(1.0, "", "MAVLink, ESTIMATOR_STATUS: above 1 a measurement is rejected"),
-    "ardupilot": Limit(0.8, "", "FS_EKF_THRESH of an ArduCopter 4.7; ArduPilot wiki, EKF Failsafe"),
-}
 FAILSAFE_AFTER_S = 1.0
 """ArduPilot wiki, EKF Failsafe: any two of compass, position, velocity above the limit for 1 s."""
 
 
 @dataclass(slots=True)
-class _Ratio:
-    name: str
-    spells: Spells = field(default_factory=Spells)
-    worst: Worst = field(default_factory=Worst)
+class AttitudeDetector:
+    tilt: Held = field(default_factory=lambda: Held(TILT))
+
+    def handle(self, fact: Fact, now: Situation) -> None:
+        if isinstance(fact, Pose) and now.flying:
+            # PX4 judges each by itself.
+            self.tilt.update(now.t_s, max(abs(fact.roll_deg), abs(fact.pitch_deg)))
+
+    def result(self, now: Situation) -> Result:
+        result = Result()
+        self.tilt.result(result)
+        return result
 
 
 @dataclass(slots=True)
 class EstimatorDetector:
-    ratios: list[_Ratio] = field(
-        default_factory=lambda: [_Ratio(n) for n in ("velocity", "position", "height", "compass")]
-    )
+    ratios: list[Held] = field(default_factory=lambda: list(map(Held, RATIOS)))
     two: Spells = field(default_factory=Spells)
     failsafe_s: float | None = None
 
@@ -36,42 +39,22 @@ class EstimatorDetector:
         if not isinstance(fact, Estimator) or fact.autopilot != now.autopilot:
             return
         if not now.armed:
-            for spells in (self.two, *(ratio.spells for ratio in self.ratios)):
-                spells.update(now.t_s, False)
+            self.two.update(now.t_s, False)
+            for ratio in self.ratios:
+                ratio.rest(now.t_s)
             return
-        limit = REJECTED[fact.autopilot].value
         values = (fact.velocity, fact.position, fact.height, fact.compass)
         for ratio, value in zip(self.ratios, values, strict=True):
-            ratio.worst.update(now.t_s, value)
-            ratio.spells.update(now.t_s, value is not None and value > limit)
-        velocity, position, _, compass = self.ratios
-        self.two.update(now.t_s, sum(r.spells.open for r in (velocity, position, compass)) >= 2)
+            ratio.update(now.t_s, value, fact.autopilot)
+        velocity, position, _, compass = (ratio.spells[0].open for ratio in self.ratios)
+        self.two.update(now.t_s, velocity + position + compass >= 2)
         if self.two.spell_s >= FAILSAFE_AFTER_S and self.failsafe_s is None:
             self.failsafe_s = now.t_s
 
     def result(self, now: Situation) -> Result:
         result = Result()
-        limit = REJECTED.get(now.autopilot, REJECTED["px4"])
         for ratio in self.ratios:
-            worst, level = ratio.worst.value, None
-            if worst is not None:
-                level = Level.WARNING if ratio.spells.count else Level.OK
-            if ratio.spells.count and worst is not None:
-                result.findings.append(
-                    Finding(
-                        "estimator",
-                        Level.WARNING,
-                        ratio.spells.first_s,
-                        f"the estimator's {ratio.name} disagreed with the sensors",
-                        f"ratio up to {worst:.2f} at {clock(ratio.worst.t_s)}, above "
-                        f"{limit.value:g} {ratio.spells.words}",
-                        source=limit.source,
-                    )
-                )
-            measured = "" if worst is None else f"up to {worst:.2f}"
-            told = f"below {limit.value:g}"
-            name = f"Estimator, {ratio.name}"
-            result.checks.append(Check("estimator", name, measured, told, limit.source, level))
+            ratio.result(result, now.autopilot)
         if self.failsafe_s is not None and now.autopilot == "ardupilot":
             result.findings.append(
                 Finding(
@@ -80,7 +63,7 @@ class EstimatorDetector:
                     self.failsafe_s,
                     "two of the estimator's measures were above the limit for a second",
                     "which is when ArduCopter's EKF failsafe acts",
-                    source=limit.source,
+                    source=REJECTED["ardupilot"].source,
                 )
             )
         return result

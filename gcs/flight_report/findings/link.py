@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 
 from gcs.flight_report.facts import Fact, Status
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
-from gcs.flight_report.findings.spells import Spells, Worst
-from gcs.flight_report.number_format import clock
+from gcs.flight_report.findings.limits import LOST_MESSAGES, Held
 
 GAP = Limit(2.0, "s", "two heartbeats missed; MAVLink's heartbeat comes once a second")
 LOST = Limit(3.5, "s", "heartbeat_age_s of the default policy: there is no vehicle any more")
@@ -16,7 +15,6 @@ FAILSAFE = {
     "ardupilot": Limit(5.0, "s", "FS_GCS_TIMEOUT of an ArduCopter 4.7"),
 }
 """After this long without a ground station the vehicle's own failsafe acts, where it is on."""
-LOSS = Limit(5.0, "%", "this project's own choice")
 MAX_GAPS = 200
 
 
@@ -28,8 +26,7 @@ class LinkDetector:
     """Start, length in seconds, whether the vehicle was armed."""
     heard_s: float | None = None
     longest_s: float = 0.0
-    lossy: Spells = field(default_factory=Spells)
-    loss: Worst = field(default_factory=Worst)
+    loss: Held = field(default_factory=lambda: Held(LOST_MESSAGES))
 
     def heard(self, now: Situation) -> None:
         before = self.heard_s
@@ -40,7 +37,6 @@ class LinkDetector:
     def handle(self, fact: Fact, now: Situation) -> None:
         if isinstance(fact, Status) and now.armed and fact.lost_pct is not None:
             self.loss.update(now.t_s, fact.lost_pct)
-            self.lossy.update(now.t_s, fact.lost_pct > LOSS.value)
 
     def result(self, now: Situation) -> Result:
         result = Result()
@@ -72,29 +68,10 @@ class LinkDetector:
         result.checks.append(
             Check("link", "Silence", measured, told, LOST.source, worst if known else None)
         )
-        self._loss(result)
+        self.loss.result(result)
         return result
 
     def _silence(self, start_s: float, length_s: float, armed: bool) -> None:
         self.longest_s = max(self.longest_s, length_s)
         if length_s > GAP.value and len(self.gaps) < MAX_GAPS:
             self.gaps.append((start_s, length_s, armed))
-
-    def _loss(self, result: Result) -> None:
-        most, level = self.loss.value, None
-        if most is not None:
-            level = Level.WARNING if self.lossy.count else Level.OK
-        if self.lossy.count and most is not None:
-            result.findings.append(
-                Finding(
-                    "link",
-                    Level.WARNING,
-                    self.lossy.first_s,
-                    f"more than {LOSS.value:g} % of the vehicle's messages were lost",
-                    f"up to {most:.0f} % at {clock(self.loss.t_s)}; {self.lossy.words}",
-                    source=LOSS.source,
-                )
-            )
-        measured = "" if most is None else f"up to {most:.1f} % lost"
-        told = f"at most {LOSS.value:g} %"
-        result.checks.append(Check("link", "Loss", measured, told, LOSS.source, level))

@@ -18,7 +18,7 @@ from gcs.flight_report.facts import (
     Text,
     Vibration,
 )
-from gcs.flight_report.findings.attitude import AttitudeDetector
+from gcs.flight_report.findings.estimator import AttitudeDetector
 from gcs.flight_report.findings.battery import BatteryDetector
 from gcs.flight_report.findings.estimator import EstimatorDetector
 from gcs.flight_report.findings.failsafes import FailsafeDetector
