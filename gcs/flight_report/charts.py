@@ -18,7 +18,7 @@ class Line(msgspec.Struct):
 
     label: str
     unit: str
-    values: list[float | None]
+    values: list[float | None] = []
     axis: int = 0
     steps: bool = False
     dots: bool = False
@@ -37,8 +37,8 @@ class Chart(msgspec.Struct):
     id: str
     title: str
     about: str
-    x: list[float]
-    lines: list[Line]
+    x: list[float] = []
+    lines: list[Line] = []
     limits: list[LimitLine] = []
     low: float | None = None
     """The first scale begins here, whatever the values."""
@@ -71,48 +71,100 @@ def chart_data(flight: Flight, vehicle: VehicleFlight | None) -> ChartData:
 
 
 def _charts(vehicle: VehicleFlight) -> list[Chart]:
-    plots, kind = vehicle.plots, vehicle.autopilot
+    plots, autopilot = vehicle.plots, vehicle.autopilot
+    rejected = REJECTED.get(autopilot, REJECTED["px4"]).value
+    kind = autopilot if autopilot in FAIR else "ardupilot"
+    fair, bad = FAIR[kind].value, BAD[kind].value
+    shaken = f"good below {fair:g}, bad above {bad:g} m/s²"
+    if kind == "px4":
+        shaken += "; PX4 sends the accelerometers' in z, the gyroscopes' in x and y"
     return [
         _chart(
-            "height",
-            "Height",
-            "above the local origin, with the height of the goal",
+            Chart("height", "Height", "above the local origin, with the height of the goal"),
             plots.height,
-            [_line("height", "m"), Line("goal", "m", [], steps=True, dashed=True)],
+            Line("height", "m"),
+            Line("goal", "m", steps=True, dashed=True),
         ),
         _chart(
-            "speed",
-            "Speed",
-            "over ground, and climbing",
+            Chart("speed", "Speed", "over ground, and climbing"),
             plots.speed,
-            [_line("over ground", "m/s"), _line("climb", "m/s")],
+            Line("over ground", "m/s"),
+            Line("climb", "m/s"),
         ),
         _chart(
-            "attitude",
-            "Attitude",
-            "roll to the right, pitch up",
+            Chart("attitude", "Attitude", "roll to the right, pitch up"),
             plots.attitude,
-            [_line("roll", "°"), _line("pitch", "°")],
+            Line("roll", "°"),
+            Line("pitch", "°"),
         ),
-        _heading(plots.heading),
-        _battery(plots.battery),
-        _link(plots.link),
-        _gps(plots.gps),
-        _estimator(plots.estimator, kind),
-        _vibration(plots.vibration, kind),
+        _turned(
+            _chart(
+                Chart("heading", "Heading", "clockwise from north", circle=True),
+                plots.heading,
+                Line("heading", "°", dots=True),
+            )
+        ),
+        _chart(
+            Chart("battery", "Battery", "voltage; what is left, and the current", right_to=100.0),
+            plots.battery,
+            Line("voltage", "V"),
+            Line("left", "%", axis=1),
+            Line("current", "A", axis=1, dashed=True),
+        ),
+        _chart(
+            Chart(
+                "link",
+                "Link",
+                "messages of the vehicle a second, and how many were lost",
+                low=0.0,
+                right_to=10.0,
+            ),
+            plots.link,
+            Line("messages", "/s"),
+            Line("lost", "%", axis=1),
+        ),
+        _chart(
+            Chart(
+                "gps",
+                "GPS",
+                f"satellites; HDOP, bad above {HDOP_BAD.value:g}",
+                limits=[LimitLine(HDOP_BAD.value, "warning", 1)],
+                low=0.0,
+                right_to=1.25 * HDOP_BAD.value,
+            ),
+            plots.gps,
+            Line("satellites", "", steps=True),
+            Line("HDOP", "", axis=1),
+        ),
+        _chart(
+            Chart(
+                "estimator",
+                "Estimator",
+                f"how far measurements are from what it expects; bad above {rejected:g}",
+                limits=[LimitLine(rejected, "warning")],
+                low=0.0,
+            ),
+            plots.estimator,
+            *(Line(name, "") for name in plots.estimator.names),
+        ),
+        _chart(
+            Chart(
+                "vibration",
+                "Vibration",
+                shaken,
+                limits=[LimitLine(fair, "note"), LimitLine(bad, "critical")],
+                low=0.0,
+            ),
+            plots.vibration,
+            Line("x", ""),
+            Line("y", ""),
+            Line("z", "m/s²"),
+        ),
     ]
 
 
-def _heading(series: Series) -> Chart:
+def _turned(chart: Chart) -> Chart:
     """Cut where the vehicle looks least, so that a heading about north is one line and not two."""
-    chart = _chart(
-        "heading",
-        "Heading",
-        "clockwise from north",
-        series,
-        [Line("heading", "°", [], dots=True)],
-    )
-    chart.circle = True
     for line in chart.lines:
         turns = [radians(value) for value in line.values if value is not None]
         middle = degrees(atan2(sum(map(sin, turns)), sum(map(cos, turns))))
@@ -123,90 +175,16 @@ def _heading(series: Series) -> Chart:
     return chart
 
 
-def _link(series: Series) -> Chart:
-    chart = _chart(
-        "link",
-        "Link",
-        "messages of the vehicle a second, and how many were lost",
-        series,
-        [_line("messages", "/s"), Line("lost", "%", [], axis=1)],
-        low=0.0,
-    )
-    chart.right_to = 10.0
-    return chart
-
-
-def _battery(series: Series) -> Chart:
-    lines = [
-        _line("voltage", "V"),
-        Line("left", "%", [], axis=1),
-        Line("current", "A", [], axis=1, dashed=True),
-    ]
-    chart = _chart("battery", "Battery", "voltage; what is left, and the current", series, lines)
-    chart.right_to = 100.0
-    return chart
-
-
-def _gps(series: Series) -> Chart:
-    chart = _chart(
-        "gps",
-        "GPS",
-        f"satellites; HDOP, bad above {HDOP_BAD.value:g}",
-        series,
-        [Line("satellites", "", [], steps=True), Line("HDOP", "", [], axis=1)],
-        low=0.0,
-    )
-    chart.limits = [LimitLine(HDOP_BAD.value, "warning", 1)]
-    chart.right_to = 1.25 * HDOP_BAD.value
-    return chart
-
-
-def _estimator(series: Series, autopilot: str) -> Chart:
-    limit = REJECTED.get(autopilot, REJECTED["px4"])
-    chart = _chart(
-        "estimator",
-        "Estimator",
-        f"how far measurements are from what it expects; bad above {limit.value:g}",
-        series,
-        [_line(name, "") for name in series.names],
-        low=0.0,
-    )
-    chart.limits = [LimitLine(limit.value, "warning")]
-    return chart
-
-
-def _vibration(series: Series, autopilot: str) -> Chart:
-    kind = autopilot if autopilot in FAIR else "ardupilot"
-    about = f"good below {FAIR[kind].value:g}, bad above {BAD[kind].value:g} m/s²"
-    if kind == "px4":
-        about += "; PX4 sends the accelerometers' in z, the gyroscopes' in x and y"
-    lines = [_line("x", ""), _line("y", ""), _line("z", "m/s²")]
-    chart = _chart("vibration", "Vibration", about, series, lines, low=0.0)
-    chart.limits = [LimitLine(FAIR[kind].value, "note"), LimitLine(BAD[kind].value, "critical")]
-    return chart
-
-
-def _line(label: str, unit: str) -> Line:
-    return Line(label, unit, [])
-
-
-def _chart(
-    name: str,
-    title: str,
-    about: str,
-    series: Series,
-    lines: list[Line],
-    low: float | None = None,
-) -> Chart:
-    """Without the lines that have no value at all."""
+def _chart(chart: Chart, series: Series, *lines: Line) -> Chart:
+    """With its values, and without the lines that have none at all."""
     rows = series.rows()
-    times = [round(t_s, 2) for t_s, _ in rows]
-    drawn = []
     for column, line in enumerate(lines):
         line.values = [_rounded(values[column]) for _, values in rows]
         if any(value is not None for value in line.values):
-            drawn.append(line)
-    return Chart(name, title, about, times if drawn else [], drawn, low=low)
+            chart.lines.append(line)
+    if chart.lines:
+        chart.x = [round(t_s, 2) for t_s, _ in rows]
+    return chart
 
 
 def _rounded(value: float | None) -> float | None:

@@ -18,9 +18,8 @@ from gcs.flight_report.facts import (
     Text,
     Vibration,
 )
-from gcs.flight_report.findings.estimator import AttitudeDetector
 from gcs.flight_report.findings.battery import BatteryDetector
-from gcs.flight_report.findings.estimator import EstimatorDetector
+from gcs.flight_report.findings.estimator import AttitudeDetector, EstimatorDetector
 from gcs.flight_report.findings.failsafes import FailsafeDetector
 from gcs.flight_report.findings.finding import Level, Situation
 from gcs.flight_report.findings.gate import GateDetector
