@@ -10,8 +10,10 @@ CLIENTS := .clients
 TESTED  := $(CLIENTS)/mavsdk/.installed $(CLIENTS)/mavsdk3/.installed $(CLIENTS)/pymavlink/.installed
 SLOWER  := tests/clients/test_mavproxy.py tests/clients/test_dronekit.py
 OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
-# Four of them have the tests that wait for real time: see tests/lanes.py.
-WORKERS ?= 6
+# Beside the tests that compute run those in which separate processes mostly wait for real time:
+# four of these at once last no longer than what computes, which gives way to them.
+WAIT    := $(BIN)/python -m pytest tests/clients tests/system -n 4 --dist worksteal $(SLOWER:%=--ignore=%)
+COMPUTE := nice -n 5 $(BIN)/python -m pytest --ignore=tests/clients --ignore=tests/system -n 2 --dist worksteal
 FEWER   := --hypothesis-profile quick
 
 # Without its bytecode files every worker and every program under test compiles the same again.
@@ -27,13 +29,13 @@ demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated v
 	@$(BIN)/gcs demo
 
 quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about 40 s)
-	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 $(FEWER)'
+	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 --dist worksteal $(FEWER)'
 
 test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (about 6 minutes on 2 cores)
-	$(BIN)/python -m pytest -m "not thorough" -n $(WORKERS) $(FEWER) $(SLOWER:%=--ignore=%)
+	@sh .ci/beside '$(WAIT) -m "not thorough" $(FEWER)' '$(COMPUTE) -m "not thorough" $(FEWER)'
 
 thorough: $(TEST) $(TESTED) ## run the long tests: exhaustive, or one thing many times over; as .ci/run does
-	$(BIN)/python -m pytest -m "thorough or hypothesis" -n $(WORKERS) $(SLOWER:%=--ignore=%)
+	@sh .ci/beside '$(WAIT) -m "thorough or hypothesis"' '$(COMPUTE) -m "thorough or hypothesis"'
 
 check: lint types contracts test ## all that a commit must pass: ruff, mypy, import contracts, tests
 
@@ -54,7 +56,7 @@ real: $(TEST) ## fly a real PX4 and a real ArduCopter (docs/real.md), judged by 
 	$(BIN)/python -m tests.real $(ARGS)
 
 soak: $(TEST) ## the properties on new random examples, and the random runs as a whole (about 70 minutes and 15 GB on 2 cores)
-	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios tests/soak -n $(WORKERS)
+	MAVGATE_SOAK=1 $(BIN)/python -m pytest tests/unit tests/loopback tests/scenarios tests/soak -n 2 --dist worksteal
 
 oracles: $(TEST) ## after moves and renames: does every frame, record, old audit, help and gate cell stay as it was?
 	$(BIN)/python -m tests.oracles $(ARGS)

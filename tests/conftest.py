@@ -11,7 +11,6 @@ and flies the tests that are marked `soak` as well.
 from __future__ import annotations
 
 import gc
-import os
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -22,9 +21,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.lanes import looks_into, part, turn, waits
 from tests.sample_files import ELSEWHERE, NOT_HERE
-from tests.scheduler import Scheduler
 from tests.shares import other_flights
 from tests.soaking import SOAKING, counts, left_out
 
@@ -36,8 +33,6 @@ FLOWN = tuple(
 """Folders whose tests step a vehicle through minutes of its time."""
 OUTSIDE = ("subprocess.Popen", "os.posix_spawn", "os.fork", "socket.bind", "socket.connect")
 """Audit events of what a test may do only if it is marked slow."""
-GIVES_WAY_BY = 5
-"""How much nicer a worker is that computes than the programs others wait for in real time."""
 
 # How quickly this machine draws examples is nothing that a test is about.
 ON_ANY_MACHINE = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -68,7 +63,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in flown:
         if is_slow(item.path) or item.get_closest_marker("thorough"):
             item.add_marker(pytest.mark.slow)
-    items[:] = sorted(flown, key=lambda item: turn(item.nodeid))
+    items[:] = flown
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -87,53 +82,11 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """With `-n`, shares the tests out as `tests/lanes.py` says; `--dist` chooses another way."""
-    if config.getvalue("dist") != "load":
-        return None
-    from xdist.workermanage import parse_tx_spec_config
-
-    session = config.pluginmanager.getplugin("dsession")
-
-    def all_collected(count: int) -> None:
-        """What the percentages of the terminal are of."""
-        session._session.testscollected = count
-
-    return Scheduler(len(parse_tx_spec_config(config)), all_collected)
-
-
-@cache
-def own_part(config: pytest.Config) -> str | None:
-    """What this worker collects of a run of all tests: see `tests/lanes.py`."""
-    worker = os.environ.get("PYTEST_XDIST_WORKER")
-    if worker is None or config.args_source is not config.ArgsSource.TESTPATHS:
-        return None
-    return part(worker, int(os.environ["PYTEST_XDIST_WORKER_COUNT"]))
-
-
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Collecting is a good part of a run: no file is looked into of which no test is wanted."""
     if config.getoption("markexpr") == "not slow" and collection_path.name.startswith("test_"):
         return is_slow(collection_path) or None
-    own = own_part(config)
-    if own is None or not collection_path.is_relative_to(config.rootpath):
-        return None
-    path = collection_path.relative_to(config.rootpath).as_posix()
-    return None if looks_into(path + "/" * collection_path.is_dir(), own) else True
-
-
-@cache
-def _give_way() -> None:
-    """Once, and for as long as this worker lives."""
-    if hasattr(os, "nice"):
-        os.nice(GIVES_WAY_BY)
-
-
-def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Whoever computes takes nothing from the programs that others wait for in real time."""
-    if "PYTEST_XDIST_WORKER" in os.environ and not waits(item.nodeid):
-        _give_way()
+    return None
 
 
 _quick: list[str] = []
@@ -158,8 +111,8 @@ def _watch(event: str, _details: tuple[object, ...]) -> None:
 sys.addaudithook(_watch)
 
 
-LEFT_OUT = pytest.StashKey[dict[str, int]]()
-"""How many tests that are marked `thorough` this run leaves out, by the part of who collected."""
+LEFT_OUT = pytest.StashKey[int]()
+"""How many tests that are marked `thorough` this run leaves out."""
 
 
 def pytest_deselected(items: Sequence[pytest.Item]) -> None:
@@ -167,22 +120,20 @@ def pytest_deselected(items: Sequence[pytest.Item]) -> None:
         asked = "thorough" in item.config.getoption("markexpr")
         rarer = item.get_closest_marker("soak")
         if asked and item.get_closest_marker("thorough") and not rarer:
-            left_out = item.config.stash.setdefault(LEFT_OUT, {})
-            own = own_part(item.config) or ""
-            left_out[own] = left_out.get(own, 0) + 1
+            item.config.stash[LEFT_OUT] = item.config.stash.get(LEFT_OUT, 0) + 1
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """A worker tells the process that sums up; workers with one part left out the same ones."""
+    """A worker tells the process that sums up; all workers left out the same tests."""
     worker: dict[str, object] | None = getattr(session.config, "workeroutput", None)
     if worker is not None:
-        worker["left_out"] = session.config.stash.get(LEFT_OUT, {})
+        worker["left_out"] = session.config.stash.get(LEFT_OUT, 0)
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any) -> None:
-    left_out = getattr(node, "workeroutput", {}).get("left_out", {})
-    node.config.stash.setdefault(LEFT_OUT, {}).update(left_out)
+    left_out = getattr(node, "workeroutput", {}).get("left_out", 0)
+    node.config.stash[LEFT_OUT] = max(left_out, node.config.stash.get(LEFT_OUT, 0))
 
 
 def pytest_terminal_summary(
@@ -192,7 +143,7 @@ def pytest_terminal_summary(
     nobody takes silence for a pass."""
     for line in counts(terminalreporter.stats.get("passed", [])):
         terminalreporter.write_line(line)
-    if left_out := sum(config.stash.get(LEFT_OUT, {}).values()):
+    if left_out := config.stash.get(LEFT_OUT, 0):
         terminalreporter.write_line(f"{left_out} longer tests are left to `make thorough`")
     reasons = [str(report.longrepr) for report in terminalreporter.stats.get("skipped", [])]
     count = sum(NOT_HERE in reason for reason in reasons)

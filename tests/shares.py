@@ -1,16 +1,16 @@
 """Which share of the longer tests `make test` has; the others are marked `thorough`.
 
 A test that flies is flown in one of five of its cases, one if it has fewer: px4 or ardupilot, or
-one of three winds.  Which of them come first its name decides, so that each autopilot flies about
-half of each file.  What is long in other ways is marked where it stands: `one_in` so many of a list
-of cases, `seeds`, or `pytest.mark.thorough`.
+one of three winds.  Which of them comes first is told by the place of the test in its file, so that
+each autopilot flies half of each file.  What is long in other ways is marked where it stands:
+`one_in` so many of a list of cases, `seeds`, or `pytest.mark.thorough`.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from zlib import crc32
+from typing import cast
 
 import pytest
 from _pytest.mark import ParameterSet
@@ -93,11 +93,16 @@ def _case(case: object, *, left: bool) -> ParameterSet:
 
 def other_flights(items: Sequence[pytest.Item]) -> Iterator[pytest.Item]:
     """Of the tests that fly: their other cases, but for what is marked already."""
-    cases: dict[str, list[pytest.Item]] = defaultdict(list)
+    cases: dict[tuple[str, int], list[pytest.Item]] = defaultdict(list)
     for item in items:
         if item.nodeid.startswith(FLIGHTS) and not item.get_closest_marker("thorough"):
-            cases[item.nodeid.partition("[")[0]].append(item)
-    for name, flights in cases.items():
-        begin = crc32(name.encode()) % min(ONE_OF, len(flights))
-        flown = flights[begin::ONE_OF]
+            cases[item.nodeid.partition("[")[0], _place(item)].append(item)
+    for (_, place), flights in cases.items():
+        flown = flights[place % min(ONE_OF, len(flights)) :: ONE_OF]
         yield from (flight for flight in flights if flight not in flown)
+
+
+def _place(item: pytest.Item) -> int:
+    """Which test of its file this is, whichever of them are asked for; the first one is 0."""
+    test = cast("pytest.Function", item)
+    return [name for name in vars(test.module) if name.startswith("test_")].index(test.originalname)
