@@ -20,15 +20,10 @@ from gcs.config import ANY_STATION, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.ipc import Ask
 from gcs.operator import event_text
-from gcs.operator.chosen_vehicle import ChosenVehicle, Way
-from gcs.operator.client import StationClient
-from gcs.operator.dialogue import (
-    Connection,
-    Dialogue,
-    InterruptSource,
-    TrackedRequest,
-    exit_code_of,
-)
+from gcs.operator.chosen_vehicle import ChosenVehicle
+from gcs.operator.client import Polling, StationClient, Way
+from gcs.operator.conversation import TrackedRequest, exit_code_of
+from gcs.operator.dialogue import Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.interrupts import Interrupts
 from gcs.operator.request_words import NEEDS_CONTROL, SendRequests
@@ -97,7 +92,7 @@ def run_through(found: Description, how: OneShotConfig, task: Task) -> int:
 
 
 def run_over(
-    connection: Connection, interrupts: InterruptSource, how: OneShotConfig, task: Task
+    connection: Polling, interrupts: InterruptSource, how: OneShotConfig, task: Task
 ) -> int:
     """The same with a station that is there already."""
     warnings = WarningFilter(cautions=how.cautions)

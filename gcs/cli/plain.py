@@ -11,14 +11,9 @@ from gcs import ipc
 from gcs.cli.line_queue import BadLine, LineQueue
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text, line_parser, request_words
-from gcs.operator.client import StationEnded
-from gcs.operator.dialogue import (
-    Connection,
-    Dialogue,
-    InterruptSource,
-    TrackedRequest,
-    exit_code_of,
-)
+from gcs.operator.client import Polling, StationEnded
+from gcs.operator.conversation import TrackedRequest, exit_code_of
+from gcs.operator.dialogue import Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.warning_filter import WarningFilter
 
@@ -54,7 +49,7 @@ class Plain:
 
     def __init__(
         self,
-        connection: Connection,
+        connection: Polling,
         interrupts: InterruptSource,
         config: PlainConfig,
         out: Printer,
@@ -223,8 +218,7 @@ class Plain:
         if self._config.as_json and seen is not None:
             self._out(ipc.encode(seen).decode().rstrip())
         else:
-            hello = self._dialogue.hello
-            self._out(event_text.state_line(seen, hello.client if hello else 0))
+            self._out(event_text.state_line(seen, self._dialogue.client))
 
     def _show_help(self) -> None:
         tell = self._err if self._config.as_json else self._out

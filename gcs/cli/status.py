@@ -32,8 +32,7 @@ def report(dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool) -> Ex
 
     dialogue.wait_until(whole, SLOW_VALUES_WAIT_S)
     display.clear()
-    client = dialogue.hello.client if dialogue.hello else 0
-    return show(dialogue.snapshot, client, as_json=as_json, bridge=dialogue.bridge)
+    return show(dialogue.snapshot, dialogue.client, as_json=as_json, bridge=dialogue.bridge)
 
 
 def show(

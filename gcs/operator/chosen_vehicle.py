@@ -7,19 +7,11 @@ snapshots show the first, and `BridgeStatus` once a second all of them, in less 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
 import msgspec
 
 from gcs import ipc
-from gcs.operator.client import Polled, Readable, StationEnded, StationEvent
-from gcs.operator.dialogue import Connection
-
-
-class Way(Connection, Protocol):
-    """To a station, for a program that polls or for one that listens."""
-
-    def listen(self, on_event: Callable[[StationEvent], None]) -> None: ...
+from gcs.operator.client import Polled, Readable, StationEnded, StationEvent, Way
 
 
 class ChosenVehicle:

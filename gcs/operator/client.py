@@ -60,6 +60,27 @@ class Polled:
     ready: list[Readable] = field(default_factory=list)
 
 
+class Listened(Protocol):
+    """A way to a station, for a program that is called for every event."""
+
+    def send(self, command: ipc.Command) -> bool: ...
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None: ...
+    def close(self) -> StationEnded: ...
+
+
+class Polling(Protocol):
+    """A way to a station, for a program that waits for its events."""
+
+    def send(self, command: ipc.Command) -> bool: ...
+    def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled: ...
+    def now_s(self) -> float: ...
+    def close(self) -> StationEnded: ...
+
+
+class Way(Polling, Listened, Protocol):
+    """Either; `StationClient` and `JoinedStation` are ways."""
+
+
 def command_line(argv: Sequence[str]) -> str:
     """What was typed, for the record: `gcs` stands for the file that it was started as."""
     program, *words = argv or [""]

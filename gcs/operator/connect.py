@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gcs import ipc
 from gcs.config import SimConfig, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
-from gcs.gate.states import LandedState, State
 from gcs.operator import joined
-from gcs.operator.chosen_vehicle import ChosenVehicle, Way
-from gcs.operator.client import StationClient
+from gcs.operator.chosen_vehicle import ChosenVehicle
+from gcs.operator.client import StationClient, Way
 from gcs.operator.differences import differences, hint, sentence
 from gcs.operator.failures import CannotConnect, Disconnected, StationDiffers
 from gcs.operator.station import Station
@@ -137,9 +135,10 @@ def _join(
         way = ChosenVehicle(way, vehicle)
     first = not chosen or found.vehicle.startswith(f"{vehicle}/")
     station = Station(way, tells_messages=first)
+    talk = station.talk
     try:
         station.wait_until(
-            lambda: station.latest is not None and bool(station.latest.vehicle or not chosen),
+            lambda: talk.snapshot is not None and bool(talk.snapshot.vehicle or not chosen),
             timeout_s,
         )
         if take_control:
@@ -155,32 +154,22 @@ def _join(
 
 def _wait_for_vehicle(station: Station, timeout_s: float) -> None:
     """Until a vehicle is heard whose place is known; a little longer for all of it."""
+    talk = station.talk
     try:
-        station.wait_until(lambda: station.hello is not None, START_WAIT_S)
-        station.wait_until(lambda: _placed(station.latest), timeout_s)
-        if station.latest is None or not station.latest.vehicle:
-            where = ", ".join(station.hello.endpoints) if station.hello else "the link"
+        station.wait_until(lambda: talk.hello is not None, START_WAIT_S)
+        station.wait_until(lambda: talk.position_known, timeout_s)
+        if talk.snapshot is None or not talk.snapshot.vehicle:
+            where = ", ".join(talk.hello.endpoints) if talk.hello else "the link"
             raise CannotConnect(
                 f"no vehicle heard within {timeout_s:g} s ({where})",
                 "start one with `vehicle-sim`, use sim=True, or name the link",
             )
-        station.wait_until(lambda: _judged(station.latest), SETTLE_WAIT_S)
+        station.wait_until(lambda: talk.can_be_judged, SETTLE_WAIT_S)
     except Disconnected as error:
-        trouble = station.trouble
+        trouble = talk.trouble
         if trouble is None or not trouble.exit_code:
             raise CannotConnect(str(error), exit_code=ExitCode.BUG) from error
         raise CannotConnect(trouble.text, trouble.hint, trouble.exit_code) from error
-
-
-def _placed(seen: ipc.Snapshot | None) -> bool:
-    return seen is not None and bool(seen.vehicle) and seen.pos_enu is not None
-
-
-def _judged(seen: ipc.Snapshot | None) -> bool:
-    """Before that a vehicle on the ground and one in the air look alike to the gate."""
-    if seen is None or seen.home_enu is None or seen.state == State.STALE.name:
-        return False
-    return seen.landed not in ("", LandedState.UNDEFINED.name)
 
 
 def _policy_file(policy: str) -> str:

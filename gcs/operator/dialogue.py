@@ -7,35 +7,20 @@ by the `on_event` that they pass in.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, Protocol
-
-import msgspec
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
-from gcs.gate.refusal import Code
-from gcs.gate.states import LandedState, State
-from gcs.operator import request_words
-from gcs.operator.client import Polled, Readable, StationEnded
+from gcs.gate.states import State
+from gcs.operator.client import Polling, Readable, StationEnded
+from gcs.operator.conversation import Conversation, TrackedRequest
 from gcs.operator.errors import ExitError, Interrupted
-from gcs.operator.station_loss import after_station_died, record_hint
 
 LEAVE_WAIT_S = 20.0
 START_WAIT_S = 60.0
 """A busy machine takes seconds to start a process, and a name server to answer."""
 SETTLE_WAIT_S = 3.0
 POLL_S = 0.5
-UNKNOWN_LANDED = ("", LandedState.UNDEFINED.name)
-
-
-class Connection(Protocol):
-    """What a dialogue needs of the way to a station; `StationClient` is one."""
-
-    def send(self, command: ipc.Command) -> bool: ...
-    def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled: ...
-    def now_s(self) -> float: ...
-    def close(self) -> StationEnded: ...
 
 
 class InterruptSource(Readable, Protocol):
@@ -45,47 +30,6 @@ class InterruptSource(Readable, Protocol):
 
     def forget(self) -> None: ...
 
-
-@dataclass(slots=True)
-class TrackedRequest:
-    """One request that was sent, and what the station has answered so far."""
-
-    sent: ipc.Ask
-    label: str
-    verdict: ipc.VerdictEvent | None = None
-    outcome: ipc.EndingEvent | None = None
-
-    @property
-    def settled(self) -> bool:
-        """Nothing more will be answered: it was refused or superseded, or its outcome is known."""
-        if self.outcome is not None:
-            return True
-        return self.verdict is not None and self.verdict.outcome != "accepted"
-
-    @property
-    def completed(self) -> bool:
-        return self.outcome is not None and self.outcome.ended == "complete"
-
-    @property
-    def exit_code(self) -> ExitCode:
-        """What a one-shot command exits with because of it."""
-        if self.completed:
-            return ExitCode.DONE
-        if self.verdict is None or self.outcome is not None or not self.settled:
-            vehicle_refused = self.outcome is not None and self.outcome.code == Code.VEHICLE_REFUSED
-            return ExitCode.REFUSED_BY_VEHICLE if vehicle_refused else ExitCode.NOT_COMPLETED
-        return _EXIT_CODE_OF_REFUSAL.get(self.verdict.code, ExitCode.REFUSED_BY_GATE)
-
-
-_EXIT_CODE_OF_REFUSAL: dict[str, ExitCode] = {
-    Code.NO_VEHICLE: ExitCode.NO_VEHICLE,
-    Code.VEHICLE_REFUSED: ExitCode.REFUSED_BY_VEHICLE,
-    Code.NO_ANSWER: ExitCode.NOT_COMPLETED,
-    Code.BAD_MISSION: ExitCode.BAD_FILE,
-    Code.RECORDER_DOWN: ExitCode.RECORDER,
-    Code.SEVERAL_VEHICLES: ExitCode.USAGE,
-    "BAD_REQUEST": ExitCode.USAGE,  # the session's code for what is no request at all
-}
 
 EventHandler = Callable[[ipc.Event, TrackedRequest | None], None]
 """Is given every event, and the request that it answers if it is of this dialogue."""
@@ -104,27 +48,23 @@ OPERATOR_HINTS = Hints(
 )
 
 
-class Dialogue:
-    """One operator's talk with one station.
+class Dialogue(Conversation):
+    """One operator's talk with one station, over a connection that is polled.
 
     Whatever waits raises `Interrupted` on a Ctrl-C, and `ExitError` if the station ends although
     nobody has asked it to.
     """
 
     def __init__(
-        self, connection: Connection, interrupts: InterruptSource, on_event: EventHandler
+        self, connection: Polling, interrupts: InterruptSource, on_event: EventHandler
     ) -> None:
+        super().__init__()
         self._connection = connection
         self._interrupts = interrupts
         self._on_event = on_event
         self._leaving = False
         self._watched: tuple[Readable, Callable[[], None]] | None = None
-        self._requests: dict[int, TrackedRequest] = {}
-        self.hello: ipc.Hello | None = None
-        self.snapshot: ipc.Snapshot | None = None
-        self.bridge: ipc.BridgeStatus | None = None
-        self.trouble: ipc.Trouble | None = None
-        self.ended: StationEnded | None = None
+        self._sent: list[TrackedRequest] = []
 
     # ------------------------------------------------------------------------- waiting
 
@@ -156,12 +96,11 @@ class Dialogue:
             sources.append(self._watched[0])
         polled = self._connection.poll(timeout_s, sources)
         for event in polled.events:
-            if isinstance(event, StationEnded):
-                self.ended = event
-            else:
-                self._handle(event)
+            tracked = self.told(event)
+            if not isinstance(event, StationEnded):
+                self._on_event(event, tracked)
         if self.ended is not None and not self._leaving:
-            raise unexpected_end(self.ended, self.trouble, self.snapshot)
+            raise self.unexpected_end()
         if self._interrupts.name and not self._leaving:
             raise Interrupted(self._interrupts.name)
         if self._watched is not None and self._watched[0] in polled.ready:
@@ -175,9 +114,9 @@ class Dialogue:
         complete in time is returned as it is: the gate knows best what it can still do.
         """
         self._wait_for_hello()
-        self.wait_until(self._position_known, timeout_s)
+        self.wait_until(lambda: self.position_known, timeout_s)
         seen = self._heard(timeout_s)
-        self.wait_until(self._can_be_judged, settle_s)
+        self.wait_until(self._settled, settle_s)
         return self.snapshot or seen
 
     def wait_until_heard(self, timeout_s: float, hints: Hints = OPERATOR_HINTS) -> ipc.Snapshot:
@@ -190,6 +129,10 @@ class Dialogue:
             lambda: self.snapshot is not None and bool(self.snapshot.vehicle), timeout_s
         )
         return self._heard(timeout_s, hints)
+
+    def _settled(self) -> bool:
+        """Nothing more is to come of what the gate judges by."""
+        return self.can_be_judged and not (self.snapshot and self.snapshot.listening)
 
     def _wait_for_hello(self) -> None:
         """Raises ExitError: what keeps the station from starting, or that it does not start."""
@@ -217,11 +160,9 @@ class Dialogue:
 
     def send(self, request: ipc.Ask, label: str = "") -> TrackedRequest:
         """Send one request, whose id is given here; its answers are noted in what is returned."""
-        number = len(self._requests) + 1
-        numbered = msgspec.structs.replace(request, id=number)
-        tracked = TrackedRequest(numbered, label or request_words.label(request))
-        self._requests[number] = tracked
-        self._connection.send(numbered)
+        tracked = self.ask(request, label)
+        self._sent.append(tracked)
+        self._connection.send(tracked.sent)
         return tracked
 
     def wait_settled(
@@ -260,7 +201,7 @@ class Dialogue:
 
     def first_failure(self) -> ExitCode:
         """The exit code of the first request that was not completed, DONE if all were."""
-        codes = (tracked.exit_code for tracked in self._requests.values())
+        codes = (tracked.exit_code for tracked in self._sent)
         return next((code for code in codes if code), ExitCode.DONE)
 
     # ------------------------------------------------------------------------- leaving
@@ -277,68 +218,3 @@ class Dialogue:
             self._connection.send(ipc.Leave(reason))
         self.wait_until(lambda: self.ended is not None or bool(self._interrupts.name), LEAVE_WAIT_S)
         return self._connection.close()
-
-    # ------------------------------------------------------------------------ internals
-
-    def _handle(self, event: ipc.Event) -> None:
-        tracked: TrackedRequest | None = None
-        match event:
-            case ipc.Hello():
-                self.hello = event
-            case ipc.Snapshot():
-                self.snapshot = event
-            case ipc.BridgeStatus():
-                self.bridge = event
-            case ipc.VerdictEvent():
-                tracked = self._requests.get(event.id)
-                if tracked is not None:
-                    tracked.verdict = event
-            case ipc.EndingEvent():
-                tracked = self._requests.get(event.id)
-                if tracked is not None:
-                    tracked.outcome = event
-            case ipc.ProgressEvent():
-                tracked = self._requests.get(event.id)
-            case ipc.Trouble():
-                self.trouble = event
-            case _:
-                pass
-        self._on_event(event, tracked)
-
-    def _position_known(self) -> bool:
-        seen = self.snapshot
-        return seen is not None and bool(seen.vehicle) and seen.pos_enu is not None
-
-    def _can_be_judged(self) -> bool:
-        """Before that a vehicle on the ground and one in the air look alike to the gate."""
-        seen = self.snapshot
-        if seen is None or seen.home_enu is None or seen.listening:
-            return False
-        return seen.landed not in UNKNOWN_LANDED and seen.state != State.STALE.name
-
-
-def unexpected_end(
-    ended: StationEnded, trouble: ipc.Trouble | None, seen: ipc.Snapshot | None = None
-) -> ExitError:
-    """Why the station ended although nobody asked it to, and what its vehicle does now.
-
-    `trouble` and `seen` are the last that it told; who is sent no snapshots passes none.
-    """
-    if trouble is not None and trouble.exit_code:
-        return ExitError(trouble.exit_code, trouble.text, trouble.hint)
-    if ended.bye is not None:
-        return ExitError(ended.bye.exit_code or ExitCode.BUG, ended.bye.sentence)
-    if ended.exit_code is None:
-        return ExitError(ExitCode.NOT_COMPLETED, "the connection to the station was lost")
-    code, tail = ended.exit_code, ended.stderr_tail
-    words = f"its last words:\n{tail}" if tail else "it left no word"
-    return ExitError(
-        ExitCode.BUG,
-        f"the link process died (exit code {code}); {after_station_died(seen)}",
-        "\n".join(filter(None, (record_hint(seen.log_path if seen else ""), words))),
-    )
-
-
-def exit_code_of(ended: StationEnded) -> int:
-    """What the station's good-bye says the exit code is; BUG if there was no good-bye."""
-    return ExitCode.BUG if ended.bye is None else ended.bye.exit_code

@@ -6,8 +6,8 @@ from types import TracebackType
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
-from gcs.operator.client import StationEnded
-from gcs.operator.dialogue import Connection, unexpected_end
+from gcs.operator.client import Polling
+from gcs.operator.conversation import Conversation
 from gcs.operator.errors import ExitError
 
 POLL_S = 0.5
@@ -16,10 +16,9 @@ POLL_S = 0.5
 class OperationsView:
     """A block that looks at the operations and leaves the station as it was."""
 
-    def __init__(self, connection: Connection) -> None:
+    def __init__(self, connection: Polling) -> None:
         self._connection = connection
-        self._operations: dict[int, ipc.Operation] | None = None
-        self._trouble: ipc.Trouble | None = None
+        self._talk = Conversation()
 
     def __enter__(self) -> OperationsView:
         self._connection.send(ipc.ListOperations(1))
@@ -37,19 +36,19 @@ class OperationsView:
     def listed(self, timeout_s: float) -> list[ipc.Operation]:
         """All that the station still knows, the oldest first.  Raises ExitError."""
         deadline_s = self._connection.now_s() + timeout_s
-        while self._operations is None:
+        while self._talk.operations is None:
             if self._connection.now_s() >= deadline_s:
                 raise ExitError(ExitCode.NOT_COMPLETED, "the station does not answer")
             self._poll()
-        return list(self._operations.values())
+        return list(self._talk.operations.values())
 
     def ended(self, number: int, timeout_s: float) -> ipc.Operation:
         """That operation, once it has ended.  Raises ExitError, also when it takes too long."""
         deadline_s = self._connection.now_s() + timeout_s
         self.listed(timeout_s)
         while True:
-            assert self._operations is not None
-            operation = self._operations.get(number)
+            assert self._talk.operations is not None
+            operation = self._talk.operations.get(number)
             if operation is None:
                 hint = "gcs operations lists those that the station still knows"
                 raise ExitError(ExitCode.USAGE, f"no operation {number}", hint)
@@ -62,14 +61,6 @@ class OperationsView:
 
     def _poll(self) -> None:
         for event in self._connection.poll(POLL_S).events:
-            match event:
-                case ipc.OperationList(_, operations):
-                    self._operations = {each.id: each for each in operations}
-                case ipc.Operation() if self._operations is not None:
-                    self._operations[event.id] = event
-                case ipc.Trouble():
-                    self._trouble = event
-                case StationEnded():
-                    raise unexpected_end(event, self._trouble)
-                case _:
-                    pass
+            self._talk.told(event)
+        if self._talk.ended is not None:
+            raise self._talk.unexpected_end()

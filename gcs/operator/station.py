@@ -12,23 +12,20 @@ north, times seconds.
 
 from __future__ import annotations
 
-import itertools
 import math
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from types import TracebackType
-from typing import Protocol
 
 import msgspec
 
 from gcs import ipc
 from gcs.frames import Vec3
-from gcs.operator.client import StationEnded, StationEvent
-from gcs.operator.dialogue import unexpected_end
+from gcs.operator.client import Listened, StationEnded, StationEvent
+from gcs.operator.conversation import Conversation, TrackedRequest
 from gcs.operator.failures import Disconnected, NotCompleted, Refused
-from gcs.operator.request_words import label
 from gcs.operator.stream import Stream
 
 TELEMETRY_WAIT_S = 5.0
@@ -37,39 +34,30 @@ KEPT_EVENTS = 10_000
 """Of an `events()` that is not read; the oldest are forgotten."""
 
 
-class Connection(Protocol):
-    """What this needs of the way to a station."""
-
-    def send(self, command: ipc.Command) -> bool: ...
-    def listen(self, on_event: Callable[[StationEvent], None]) -> None: ...
-    def close(self) -> StationEnded: ...
-
-
 class Operation:
     """An accepted request, which may still be under way."""
 
-    def __init__(self, station: Station, ask: ipc.Ask) -> None:
+    def __init__(self, station: Station, tracked: TrackedRequest) -> None:
         self._station = station
-        self.asked = ask
-        self._verdict: ipc.VerdictEvent | None = None
-        self._ending: ipc.EndingEvent | None = None
+        self._tracked = tracked
+        self.asked = tracked.sent
 
     @property
     def id(self) -> int:
         """The station's number of it, as `gcs operations` shows it."""
-        return 0 if self._verdict is None else self._verdict.operation
+        return 0 if self._tracked.verdict is None else self._tracked.verdict.operation
 
     @property
     def state(self) -> str:
         """running, complete, aborted, superseded, timed out or taken over."""
-        return "running" if self._ending is None else self._ending.ended
+        return "running" if self._tracked.outcome is None else self._tracked.outcome.ended
 
     def wait(self, timeout_s: float | None = None) -> Operation:
         """Until it is complete.  Raises NotCompleted, Disconnected."""
-        self._station.wait_until(lambda: self._ending is not None, timeout_s)
-        ending = self._ending
+        self._station.wait_until(lambda: self._tracked.settled, timeout_s)
+        ending = self._tracked.outcome
         if ending is None:
-            text = f"{label(self.asked)} is still under way after {timeout_s:g} s"
+            text = f"{self._tracked.label} is still under way after {timeout_s:g} s"
             raise NotCompleted("running", "", text)
         if ending.ended != "complete":
             raise NotCompleted(ending.ended, ending.code, ending.sentence)
@@ -83,7 +71,7 @@ class Operation:
         self._station.request(ipc.Ask(0, "abort", operation=self.id))
 
     def __repr__(self) -> str:
-        return f"<Operation {self.id} {label(self.asked)}: {self.state}>"
+        return f"<Operation {self.id} {self._tracked.label}: {self.state}>"
 
 
 class Station:
@@ -93,25 +81,17 @@ class Station:
     was joined goes on; if this program was in control of it, the vehicle is held.
     """
 
-    def __init__(self, connection: Connection, *, tells_messages: bool = True) -> None:
+    def __init__(self, connection: Listened, *, tells_messages: bool = True) -> None:
         """`tells_messages`: those that it tells are of the vehicle that is flown."""
         self._connection = connection
         self._tells_messages = tells_messages
         self._changed = threading.Condition()
-        self._numbers = itertools.count(1)
-        self._operations: dict[int, Operation] = {}
-        self.hello: ipc.Hello | None = None
-        self.latest: ipc.Snapshot | None = None
-        """As `snapshot`, but None before the first one."""
-        self._operators: ipc.Operators | None = None
+        self.talk = Conversation()
+        """What the station has told so far."""
         self._subscribed: dict[str, None] = {}
         self._messages: dict[str, Mapping[str, object]] = {}
         self._unknown_messages = ""
         self._readers: list[deque[ipc.Event]] = []
-        self.trouble: ipc.Trouble | None = None
-        self.stream_verdict: ipc.StreamVerdictEvent | None = None
-        """What was told last of this program's stream; see `Stream.refusal`."""
-        self._ended: StationEnded | None = None
         self._left = False
         connection.listen(self._heard)
 
@@ -279,10 +259,10 @@ class Station:
 
         Raises Disconnected.
         """
-        self.wait_until(lambda: self.latest is not None, ANSWER_WAIT_S)
-        if self.latest is None:
+        self.wait_until(lambda: self.talk.snapshot is not None, ANSWER_WAIT_S)
+        if self.talk.snapshot is None:
             raise Disconnected("the station tells nothing")
-        return self.latest
+        return self.talk.snapshot
 
     @property
     def state(self) -> str:
@@ -306,7 +286,7 @@ class Station:
     @property
     def in_control(self) -> bool:
         """Whether this program is the operator in control of the station."""
-        hello, operators = self.hello, self._operators
+        hello, operators = self.talk.hello, self.talk.operators
         if hello is None:
             return False
         return hello.client == (1 if operators is None else operators.in_control)
@@ -348,7 +328,7 @@ class Station:
     def _read(self, reader: deque[ipc.Event]) -> Iterator[ipc.Event]:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: reader or self._ended is not None or self._left)
+                self._changed.wait_for(lambda: reader or self.talk.ended is not None or self._left)
                 if not reader:
                     return
                 event = reader.popleft()
@@ -358,20 +338,18 @@ class Station:
         """Send it; return once it is complete, or with `wait=False` accepted."""
         deadline_s = None if timeout_s is None else time.monotonic() + timeout_s
         with self._changed:
-            number = next(self._numbers)
-            operation = self._operations[number] = Operation(
-                self, msgspec.structs.replace(ask, id=number)
-            )
-        if not self._connection.send(operation.asked):
+            tracked = self.talk.ask(ask)
+        if not self._connection.send(tracked.sent):
             raise self._end()
-        self.wait_until(lambda: operation._verdict is not None, timeout_s)
-        verdict = operation._verdict
+        self.wait_until(lambda: tracked.verdict is not None, timeout_s)
+        verdict = tracked.verdict
         if verdict is None:
-            raise NotCompleted("running", "", f"{label(ask)}: no verdict after {timeout_s:g} s")
+            raise NotCompleted("running", "", f"{tracked.label}: no verdict after {timeout_s:g} s")
         if verdict.outcome == "refused":
             raise Refused(verdict.code, verdict.sentence, verdict.numbers)
         if verdict.outcome != "accepted":
             raise NotCompleted(verdict.outcome, verdict.code, verdict.sentence)
+        operation = Operation(self, tracked)
         if not wait:
             return operation
         left_s = None if deadline_s is None else max(0.0, deadline_s - time.monotonic())
@@ -385,23 +363,22 @@ class Station:
     def wait_until(self, done: Callable[[], bool], timeout_s: float | None) -> None:
         """Until `done()`, or the time is over.  Raises Disconnected."""
         with self._changed:
-            self._changed.wait_for(lambda: done() or self._ended is not None, timeout_s)
-            if not done() and self._ended is not None:
+            self._changed.wait_for(lambda: done() or self.talk.ended is not None, timeout_s)
+            if not done() and self.talk.ended is not None:
                 raise self._end()
 
     def _end(self) -> Disconnected:
         if self._left:
             return Disconnected("this program has left the station")
-        if self._ended is None:
+        if self.talk.ended is None:
             return Disconnected("the connection to the station was lost")
-        return Disconnected(str(unexpected_end(self._ended, self.trouble, self.latest)))
+        return Disconnected(str(self.talk.unexpected_end()))
 
     def _heard(self, event: StationEvent) -> None:
         """In the reader's thread."""
         with self._changed:
-            if isinstance(event, StationEnded):
-                self._ended = event
-            else:
+            self.talk.told(event)
+            if not isinstance(event, StationEnded):
                 self._note(event)
                 for reader in self._readers:
                     reader.append(event)
@@ -409,31 +386,18 @@ class Station:
 
     def _note(self, event: ipc.Event) -> None:
         match event:
-            case ipc.Hello():
-                self.hello = event
-            case ipc.Snapshot():
-                self.latest = event
-            case ipc.StateEvent() if self.latest is not None:
+            case ipc.StateEvent() if self.talk.snapshot is not None:
                 # What a request that has just ended led to is known before the next snapshot.
-                self.latest = msgspec.structs.replace(
-                    self.latest, state=event.after, control=event.control, severity=event.severity
+                self.talk.snapshot = msgspec.structs.replace(
+                    self.talk.snapshot,
+                    state=event.after,
+                    control=event.control,
+                    severity=event.severity,
                 )
-            case ipc.Operators():
-                self._operators = event
-            case ipc.VerdictEvent() if event.id in self._operations:
-                self._operations[event.id]._verdict = event
-                if event.outcome != "accepted":
-                    del self._operations[event.id]
-            case ipc.EndingEvent() if event.id in self._operations:
-                self._operations.pop(event.id)._ending = event
-            case ipc.StreamVerdictEvent():
-                self.stream_verdict = event
             case ipc.MessageEvent():
                 self._messages[event.name] = event.fields
-            case ipc.Trouble():
-                self.trouble = event
-                if event.text.startswith("no such MAVLink message"):
-                    self._unknown_messages = event.text
+            case ipc.Trouble() if event.text.startswith("no such MAVLink message"):
+                self._unknown_messages = event.text
             case _:
                 pass
 

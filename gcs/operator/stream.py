@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import Protocol
 
 from gcs import ipc
+from gcs.operator.conversation import Conversation
 from gcs.operator.failures import Disconnected, NotCompleted
 
 PERIOD_S = 0.1
@@ -30,7 +31,7 @@ class Running(Protocol):
 class Streaming(Protocol):
     """What a stream needs of the station."""
 
-    stream_verdict: ipc.StreamVerdictEvent | None
+    talk: Conversation
 
     def request(
         self, ask: ipc.Ask, wait: bool = True, timeout_s: float | None = None
@@ -50,7 +51,7 @@ class Stream:
         self._operation: Running | None = None
 
     def __enter__(self) -> Stream:
-        self._station.stream_verdict = None
+        self._station.talk.stream_verdict = None
         self._operation = self._station.request(ipc.Ask(0, "stream_begin"), wait=False)
         return self
 
@@ -68,7 +69,7 @@ class Stream:
     def refusal(self) -> ipc.StreamVerdictEvent | None:
         """Why the samples are refused and the vehicle is held in its place; None: they are flown,
         or nothing was told yet."""
-        told = self._station.stream_verdict
+        told = self._station.talk.stream_verdict
         return None if told is None or told.outcome == "accepted" else told
 
     @property

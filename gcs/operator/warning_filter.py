@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.gate.condition import Condition
-from gcs.operator.dialogue import TrackedRequest
+from gcs.operator.conversation import TrackedRequest
 
 WARNING = 3
 """The level of `ipc.LogEvent`."""

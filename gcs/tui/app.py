@@ -9,7 +9,7 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from time import monotonic
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 from rich.console import RenderableType
 from textual.app import App, ComposeResult
@@ -21,7 +21,7 @@ from textual.widget import Widget
 from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text
-from gcs.operator.client import StationEnded, StationEvent
+from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.station_loss import after_station_died
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.hang_up import on_hang_up
@@ -39,14 +39,6 @@ RESTORE_WAIT_S = 5.0
 write to it, and with it the loop: then the process ends by SIGALRM."""
 SMALL_ROWS = 34
 FOLDED_AFTER_S = 2.0
-
-
-class Connection(Protocol):
-    """What the screen needs of the way to a station; `StationClient` is one."""
-
-    def send(self, command: ipc.Command) -> bool: ...
-    def listen(self, on_event: Callable[[StationEvent], None]) -> None: ...
-    def close(self) -> StationEnded: ...
 
 
 class Panel(Widget):
@@ -91,7 +83,7 @@ class FlyApp(App[None]):
 
     def __init__(
         self,
-        connection: Connection,
+        connection: Listened,
         events: Sequence[ipc.Event] = (),
         *,
         mission_path: str = "",
@@ -107,18 +99,17 @@ class FlyApp(App[None]):
         self._connection = connection
         self._first_events = events
         self.scene = Scene()
-        self._next_id = 1
         self._leaving = False
-        self._ended: StationEnded | None = None
         self._station_gone = threading.Event()
-        self._trouble: ipc.Trouble | None = None
 
     @property
     def result(self) -> SessionResult:
         """How it ended, once `run` has returned; waits for the station process to end."""
         self._end_within(0.0)
-        ended = self._ended or self._connection.close()
-        return SessionResult(ended, self._leaving, self._trouble, self.scene.snapshot)
+        talk = self.scene.talk
+        ended = talk.ended or self._connection.close()
+        talk.told(ended)
+        return SessionResult(ended, self._leaving, talk)
 
     @property
     def heard_vehicle(self) -> bool:
@@ -208,9 +199,8 @@ class FlyApp(App[None]):
             case ipc.EndingEvent() if event.id == self._start_after:
                 self._start_after = None
                 if event.ended == "complete":
-                    self._request(ipc.Ask(self._next_id, "mission_start"))
+                    self._request(ipc.Ask(0, "mission_start"))
             case ipc.Trouble():
-                self._trouble = event
                 for line in event_text.trouble_lines(event):
                     self._log_line(line, look.BAD)
             case ipc.Snapshot():
@@ -221,7 +211,7 @@ class FlyApp(App[None]):
                 pass
 
     def _handle_end(self, ended: StationEnded) -> None:
-        self._ended = ended
+        self.scene.talk.told(ended)
         if self._leaving:
             self._give_back()
             return
@@ -289,28 +279,29 @@ class FlyApp(App[None]):
 
     # --------------------------------------------------------------------- keys: send
 
-    def _request(self, request: ipc.Ask) -> None:
-        self.scene.note_request(request)
-        self._next_id += 1
-        if not self._connection.send(request):
+    def _request(self, request: ipc.Ask) -> int:
+        """Send it under a number of its own, which is returned."""
+        numbered = self.scene.ask(request)
+        if not self._connection.send(numbered):
             self.scene.answer = Answer(f"{request.word}: not sent, the link is down", "refused")
+        return numbered.id
 
     def action_request(self, word: str) -> None:
-        self._request(ipc.Ask(self._next_id, word))
+        self._request(ipc.Ask(0, word))
 
     def action_send(self) -> None:
         pending = self.scene.pending
-        goal = ipc.Ask(self._next_id, "goto", goal_enu=pending.goal_enu, yaw_deg=pending.yaw_deg)
+        goal = ipc.Ask(0, "goto", goal_enu=pending.goal_enu, yaw_deg=pending.yaw_deg)
         self._request(goal)
 
     def action_take_off(self) -> None:
-        self._request(ipc.Ask(self._next_id, "takeoff", up_m=self.scene.pending.take_off_up_m))
+        self._request(ipc.Ask(0, "takeoff", up_m=self.scene.pending.take_off_up_m))
 
     def action_fly_mission(self) -> None:
         """Start the mission on board; with one of `--mission`, once that is on board."""
         if self._mission_path:
-            self._start_after = self._next_id
-            self._request(ipc.Ask(self._next_id, "mission_upload", path=self._mission_path))
+            upload = ipc.Ask(0, "mission_upload", path=self._mission_path)
+            self._start_after = self._request(upload)
         else:
             self.action_request("mission_start")
 
@@ -329,7 +320,7 @@ class FlyApp(App[None]):
             self._connection.send(ipc.Stream(v_enu=self.scene.velocity.flown(monotonic())))
 
     def action_switch_fence(self) -> None:
-        self._request(ipc.Ask(self._next_id, "fence", on=not self.scene.fence_on))
+        self._request(ipc.Ask(0, "fence", on=not self.scene.fence_on))
 
     # ------------------------------------------------------------------- keys: station
 
@@ -356,7 +347,7 @@ class FlyApp(App[None]):
 
     def _leave(self, reason: str) -> None:
         """Once: say good-bye, show it, and exit when the station has ended, or after 8 s."""
-        if self._ended is not None:
+        if self.scene.talk.ended is not None:
             self._give_back()
         elif not self._leaving:
             self._leaving = True

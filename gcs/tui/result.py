@@ -7,44 +7,41 @@ from dataclasses import dataclass
 
 from gcs import ipc
 from gcs.operator import event_text
-from gcs.operator.client import StationEnded
-from gcs.operator.dialogue import Connection, InterruptSource, exit_code_of, unexpected_end
+from gcs.operator.client import Polling, StationEnded
+from gcs.operator.conversation import Conversation, exit_code_of
+from gcs.operator.dialogue import InterruptSource
 from gcs.operator.errors import Interrupted
 
 
 @dataclass(frozen=True, slots=True)
 class SessionResult:
-    """`asked` is False if the station ended before the operator wanted to leave; `trouble` and
-    `seen` are the last that it told."""
+    """`asked` is False if the station ended before the operator wanted to leave; `talk` is all that
+    it has told."""
 
     ended: StationEnded
     asked: bool
-    trouble: ipc.Trouble | None = None
-    seen: ipc.Snapshot | None = None
+    talk: Conversation
 
 
-def until_hello(
-    connection: Connection, interrupts: InterruptSource | None = None
-) -> list[ipc.Event]:
+def until_hello(connection: Polling, interrupts: InterruptSource | None = None) -> list[ipc.Event]:
     """The events of a station until it is ready.
 
     Only then is the screen taken: a port in use is told where the command was typed.  Raises
     ExitError if it cannot start, and Interrupted on a Ctrl-C; then the station has ended.
     """
     events: list[ipc.Event] = []
-    trouble: ipc.Trouble | None = None
-    while not any(isinstance(event, ipc.Hello) for event in events):
+    talk = Conversation()
+    while talk.hello is None:
         polled = connection.poll(1.0, () if interrupts is None else (interrupts,))
         if interrupts is not None and interrupts.name:
             connection.send(ipc.Leave(interrupts.name))
             connection.close()
             raise Interrupted(interrupts.name)
         for event in polled.events:
+            talk.told(event)
             if isinstance(event, StationEnded):
                 connection.close()
-                raise unexpected_end(event, trouble)
-            if isinstance(event, ipc.Trouble):
-                trouble = event
+                raise talk.unexpected_end()
             events.append(event)
     return events
 
@@ -57,7 +54,7 @@ def print_result(
     Raises ExitError if the station ended although nobody asked it to.
     """
     if not result.asked:
-        raise unexpected_end(result.ended, result.trouble, result.seen)
+        raise result.talk.unexpected_end()
     bye = result.ended.bye
     if bye is None:
         echo(f"gcs: the link ended without a good-bye\n{result.ended.stderr_tail}".rstrip())

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 
 from gcs import ipc
 from gcs.gate.states import State
-from gcs.operator import control_text, event_text, request_words
+from gcs.operator import control_text, event_text
+from gcs.operator.conversation import Conversation, TrackedRequest
 from gcs.tui.keyboard import PendingGoal, VelocityKeys
 
 TRAIL_POINTS = 800
@@ -36,8 +37,7 @@ class Scene:
 
     pending: PendingGoal = field(default_factory=PendingGoal)
     velocity: VelocityKeys | None = None  # in velocity mode
-    snapshot: ipc.Snapshot | None = None
-    hello: ipc.Hello | None = None
+    talk: Conversation = field(default_factory=Conversation)
     zones: list[ipc.FenceShape] = field(default_factory=list)
     trail: deque[ipc.Vec3] = field(default_factory=lambda: deque(maxlen=TRAIL_POINTS))
     last_move: ipc.StateEvent | None = None
@@ -45,26 +45,24 @@ class Scene:
     progress: ipc.ProgressEvent | None = None
     zoom: int = 0
     fence_on: bool = True
-    _requests: dict[int, ipc.Ask] = field(default_factory=dict)
     _before_take_off: PendingGoal | None = None
     _up: bool = False
     _key_since_refusal: bool = True
     heard_vehicle: bool = False
 
     @property
-    def now_ns(self) -> int:
-        return 0 if self.snapshot is None else self.snapshot.time_ns
+    def snapshot(self) -> ipc.Snapshot | None:
+        return self.talk.snapshot
 
     @property
-    def client(self) -> int:
-        """The number that the station knows this operator by."""
-        return self.hello.client if self.hello else 0
+    def now_ns(self) -> int:
+        return 0 if self.snapshot is None else self.snapshot.time_ns
 
     @property
     def in_control(self) -> bool:
         """Whether this operator may ask for everything, or would get control by asking."""
         operator = self.snapshot.in_control if self.snapshot else None
-        return operator is None or operator.client == self.client
+        return operator is None or operator.client == self.talk.client
 
     @property
     def lost(self) -> bool:
@@ -79,15 +77,11 @@ class Scene:
         held = seen is None or seen.state in (State.HOLDING.name, State.NO_VEHICLE.name)
         return None if seen is None or held else seen.active_goal_enu
 
-    def note_request(self, request: ipc.Ask) -> None:
-        """Keep it for its answers."""
-        self._requests[request.id] = request
+    def ask(self, request: ipc.Ask) -> ipc.Ask:
+        """What is to be sent: the request with its number, kept for its answers."""
         if request.word == "takeoff":
             self._before_take_off, self._up = self.pending, False
-
-    def label(self, event: ipc.VerdictEvent | ipc.EndingEvent) -> str:
-        request = self._requests.get(event.id)
-        return event.word.replace("_", " ") if request is None else request_words.label(request)
+        return self.talk.ask(request).sent
 
     def take_hover_point(self) -> ipc.Vec3 | None:
         """Once after a take-off: where it hovers, if the pending goal is as it was before.
@@ -102,15 +96,15 @@ class Scene:
         return None if touched else seen.active_goal_enu or seen.pos_enu
 
     def update(self, event: ipc.Event) -> None:
+        before = self.snapshot
+        tracked = self.talk.told(event)
         match event:
             case ipc.Hello():
-                self.hello = event
                 self.zones = event.fence
             case ipc.Fences(zones):
                 self.zones = zones
             case ipc.Snapshot():
-                self._note_control(self.snapshot, event)
-                self.snapshot = event
+                self._note_control(before, event)
                 self.heard_vehicle = self.heard_vehicle or bool(event.vehicle)
                 self._forget_old_answer()
                 self._leave_trail(event.pos_enu)
@@ -118,20 +112,18 @@ class Scene:
                 self.last_move = event
             case ipc.VerdictEvent():
                 sentence = event_text.refused_by_rule(event) or event.sentence
-                self._show_answer(self.label(event), event.outcome, event.code, sentence)
+                self._show_answer(_label(event, tracked), event.outcome, event.code, sentence)
             case ipc.EndingEvent():
                 self.progress = None
-                self._note_outcome(event)
+                if tracked is not None and tracked.completed:
+                    self._note_completed(tracked.sent)
                 if not self._says_it_is_taken(event):
-                    self._show_answer(self.label(event), event.ended, event.code, event.sentence)
+                    label = _label(event, tracked)
+                    self._show_answer(label, event.ended, event.code, event.sentence)
             case ipc.ProgressEvent():
                 # The last step of a transfer needs no ending of the request to be over.
                 self.progress = None if event.done >= event.total > 0.0 else event
-            case ipc.Operators() | ipc.Operation() | ipc.OperationList() | ipc.MessageEvent():
-                pass
-            case ipc.Topic() | ipc.TopicMessage():
-                pass
-            case ipc.LogEvent() | ipc.Trouble() | ipc.Bye():
+            case _:
                 pass
 
     def note_key(self) -> None:
@@ -161,10 +153,7 @@ class Scene:
         taken = event.word == "station_take" and event.ended == COMPLETE
         return taken and self.answer.kind == TAKEN_OVER
 
-    def _note_outcome(self, event: ipc.EndingEvent) -> None:
-        request = self._requests.get(event.id)
-        if request is None or event.ended != COMPLETE:
-            return
+    def _note_completed(self, request: ipc.Ask) -> None:
         if request.word == "fence":
             self.fence_on = request.on
         elif request.word == "takeoff":
@@ -175,7 +164,7 @@ class Scene:
         before."""
         if before is None:
             return
-        words = control_text.change_words(before.in_control, now.in_control, self.client)
+        words = control_text.change_words(before.in_control, now.in_control, self.talk.client)
         if words:
             self.answer = Answer(words, TAKEN_OVER, now.time_ns)
 
@@ -184,3 +173,8 @@ class Scene:
             return
         if not self.trail or math.dist(self.trail[-1], pos_enu) >= TRAIL_STEP_M:
             self.trail.append(pos_enu)
+
+
+def _label(event: ipc.VerdictEvent | ipc.EndingEvent, tracked: TrackedRequest | None) -> str:
+    """As it would be typed; of a request that this screen has not made, its word."""
+    return event.word.replace("_", " ") if tracked is None else tracked.label

@@ -27,12 +27,12 @@ def draw(scene: Scene) -> Text:
     panel = Text(no_wrap=True, end="")
     if seen is None or not seen.vehicle:
         panel.append("no vehicle heard yet\n", look.WARN)
-        for endpoint in scene.hello.endpoints if scene.hello else ["starting the link …"]:
+        for endpoint in scene.talk.hello.endpoints if scene.talk.hello else ["starting the link …"]:
             panel.append(f"{endpoint}\n", look.DIM)
         panel.append("start one: vehicle-sim, gcs fly --sim\n", look.DIM)
         panel.append("or name its link: --link URL\n", look.DIM)
         return panel
-    for name, value, style in rows(seen, scene.client, lost=scene.lost):
+    for name, value, style in rows(seen, scene.talk.client, lost=scene.lost):
         panel.append(f"{name:<5}", look.DIM)
         panel.append(value, style)
         panel.append("\n")

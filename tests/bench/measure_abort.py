@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from gcs import ipc
-from gcs.operator.dialogue import TrackedRequest
+from gcs.operator.conversation import TrackedRequest
 from tests.system.patience import until
 from tests.system.programs import GCS
 from tests.system.second_program import HoldWatch

@@ -11,7 +11,8 @@ from pathlib import Path
 from gcs import ipc
 from gcs.config import SimConfig, StationConfig
 from gcs.operator.client import StationClient, StationEnded
-from gcs.operator.dialogue import Dialogue, TrackedRequest
+from gcs.operator.conversation import TrackedRequest
+from gcs.operator.dialogue import Dialogue
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
 from tests.system.patience import PATIENT_POLICY, PATIENT_S

@@ -14,7 +14,7 @@ import pytest
 from gcs import ipc
 from gcs.config import StationConfig
 from gcs.operator.client import StationClient, StationEnded, StationEvent
-from gcs.operator.dialogue import exit_code_of
+from gcs.operator.conversation import exit_code_of
 from tests.system.flight_log import only_log, times_ns, whole
 from tests.system.machine import KeptWaiting
 from tests.system.patience import PATIENT_POLICY, PATIENT_S, until

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Protocol
 
 from gcs import ipc
-from gcs.operator.client import StationEnded
-from gcs.operator.dialogue import Connection, Dialogue, Hints, InterruptSource
+from gcs.operator.client import Polling, StationEnded
+from gcs.operator.dialogue import Dialogue, Hints, InterruptSource
 from gcs.operator.errors import Interrupted
 
 DRAW_S = 0.5
@@ -26,7 +26,7 @@ class Display(Protocol):
 
 
 def watch(
-    connection: Connection, interrupts: InterruptSource, display: Display, timeout_s: float | None
+    connection: Polling, interrupts: InterruptSource, display: Display, timeout_s: float | None
 ) -> StationEnded:
     """Until a signal; the station has then left in good order.
 

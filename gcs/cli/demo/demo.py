@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from gcs.cli.demo.script import Flown
-    from gcs.operator.dialogue import Connection, InterruptSource
+    from gcs.operator.client import Polling
+    from gcs.operator.dialogue import InterruptSource
 
 
 @click.command(
@@ -56,7 +57,7 @@ def demo(
 
 
 def run_over(
-    connection: Connection,
+    connection: Polling,
     interrupts: InterruptSource,
     console: Console,
     mission_path: str,
@@ -67,7 +68,8 @@ def run_over(
     from gcs.cli.demo.script import SCRIPT, perform, wait_for_all
     from gcs.cli.demo.show import FlightPrinter, show_table, show_what_to_do
     from gcs.operator import event_text
-    from gcs.operator.dialogue import Dialogue, exit_code_of
+    from gcs.operator.conversation import exit_code_of
+    from gcs.operator.dialogue import Dialogue
     from gcs.operator.errors import Interrupted
 
     flown: list[Flown] = []

@@ -8,7 +8,8 @@ from types import MappingProxyType
 from typing import Final
 
 from gcs.config import SimConfig, StationConfig
-from gcs.operator.dialogue import Dialogue, TrackedRequest
+from gcs.operator.conversation import TrackedRequest
+from gcs.operator.dialogue import Dialogue
 from gcs.operator.line_parser import parse_line
 from gcs.operator.request_words import SendRequests
 

@@ -16,7 +16,7 @@ from gcs.cli.demo.files import Written
 from gcs.cli.demo.script import Flown
 from gcs.enu_text import signed_enu
 from gcs.operator import event_text
-from gcs.operator.dialogue import TrackedRequest
+from gcs.operator.conversation import TrackedRequest
 from gcs.operator.warning_filter import WARNING, WarningFilter
 
 STYLES = {

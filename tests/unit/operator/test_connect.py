@@ -114,7 +114,7 @@ def test_a_station_with_one_vehicle_has_that_one_alone() -> None:
     (told,) = differing(vehicle=2).differences
     assert told == Difference("vehicle", "2", "1/1 px4 quadrotor")
     with gcs.connect(LINK, vehicle=1) as station:
-        assert station.hello is not None
+        assert station.talk.hello is not None
 
 
 def test_no_vehicle_is_chosen_of_a_simulator_of_ones_own() -> None:
@@ -132,7 +132,7 @@ def test_all_that_differs_is_told_at_once() -> None:
 )
 def test_what_was_not_asked_for_or_is_so_is_joined(asked: dict[str, object]) -> None:
     with gcs.connect(LINK, **asked) as station:  # type: ignore[arg-type]
-        assert station.hello is not None
+        assert station.talk.hello is not None
 
 
 def test_a_policy_is_known_by_what_is_in_its_file(tmp_path: Path) -> None:

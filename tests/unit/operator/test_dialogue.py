@@ -9,7 +9,8 @@ import pytest
 from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.operator.client import Polled, Readable
-from gcs.operator.dialogue import START_WAIT_S, Dialogue, TrackedRequest
+from gcs.operator.conversation import TrackedRequest
+from gcs.operator.dialogue import START_WAIT_S, Dialogue
 from gcs.operator.errors import ExitError
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 

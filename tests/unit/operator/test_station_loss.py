@@ -9,7 +9,8 @@ import pytest
 from gcs import ipc
 from gcs.gate.policy.parse import DEFAULT
 from gcs.operator.client import StationEnded
-from gcs.operator.dialogue import Dialogue, TrackedRequest, unexpected_end
+from gcs.operator.conversation import Conversation, TrackedRequest
+from gcs.operator.dialogue import Dialogue
 from gcs.operator.errors import ExitError
 from gcs.operator.station_loss import after_station_died
 from gcs.vehicle.parameters.failsafes import findings, limits_of
@@ -93,7 +94,10 @@ def test_of_several_vehicles_the_others_are_named_as_not_known() -> None:
 
 
 def test_the_error_says_it_and_names_the_record() -> None:
-    error = unexpected_end(KILLED, None, flying("ardupilot", FS_GCS_ENABLE=0.0))
+    talk = Conversation()
+    talk.told(flying("ardupilot", FS_GCS_ENABLE=0.0))
+    talk.told(KILLED)
+    error = talk.unexpected_end()
     assert str(error).startswith("the link process died (exit code -9); the vehicle's own ground-")
     assert "gcs log recover logs/x.mcap -o WHOLE.mcap\nit left no word" in error.hint
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcs import ipc
-from gcs.operator.dialogue import TrackedRequest
+from gcs.operator.conversation import TrackedRequest
 from gcs.operator.warning_filter import WarningFilter
 
 CAUTION = "CAUTION: vehicle_failsafe_weak: the vehicle's own failsafes: none"

@@ -12,6 +12,7 @@ from textual.pilot import Pilot
 from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.operator.client import StationEnded
+from gcs.operator.conversation import Conversation
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.tui.app import FlyApp
 from gcs.tui.result import SessionResult, print_result, until_hello
@@ -389,7 +390,7 @@ def test_without_a_vehicle_it_says_what_to_do_and_leaves_when_the_time_is_over()
 def test_a_simulated_vehicle_is_said_to_end_with_its_station() -> None:
     bye = ipc.Bye(0, "logs/x.mcap", "the vehicle is STILL FLYING in AUTO.LOITER")
     told: list[str] = []
-    ended = SessionResult(StationEnded(bye, 0, ""), asked=True)
+    ended = SessionResult(StationEnded(bye, 0, ""), asked=True, talk=Conversation())
     assert print_result(ended, told.append, simulated=True) == ExitCode.DONE
     assert told[1] == "gcs: the simulation has ended with it, and its vehicle"
 
