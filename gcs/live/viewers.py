@@ -12,8 +12,6 @@ from __future__ import annotations
 import hmac
 from dataclasses import dataclass, field
 
-import msgspec
-
 from gcs import ipc
 from gcs.live.clicked_goals import BadMessageError, clicked_goal
 from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send
@@ -28,7 +26,8 @@ from gcs.live.services import (
     goal_height_m,
     request_of,
 )
-from gcs.operator import event_text, request_words
+from gcs.operator import event_text
+from gcs.operator.conversation import Conversation
 
 LOOKING = 0
 """In place of a viewer's number: the live view's own connection."""
@@ -56,7 +55,6 @@ NEEDS_CONTROL = "this viewer only looks: call take_control with the code that gc
 class _Waiting:
     """A request that the station has not answered; `call` 0: it was a clicked goal."""
 
-    label: str
     call: int
     until_ns: int
 
@@ -81,12 +79,12 @@ class _Bucket:
 
 @dataclass(slots=True)
 class _Connection:
-    """To the station: numbers of requests, and which of them wait for a verdict or an ending."""
+    """To the station: which requests wait for a verdict, and which clicked goals for an ending."""
 
     bucket: _Bucket
-    last_id: int = 0
+    talk: Conversation = field(default_factory=Conversation)
     waiting: dict[int, _Waiting] = field(default_factory=dict)
-    clicked: dict[int, str] = field(default_factory=dict)
+    clicked: set[int] = field(default_factory=set)
 
 
 class Viewers:
@@ -157,8 +155,7 @@ class Viewers:
             return [_refused(call, "BUSY", "the viewers that look ask for too much together")]
         if len(connection.waiting) >= MAX_WAITING:
             return [_refused(call, "BUSY", "too many calls wait for the station")]
-        waiting = _Waiting(call.service, call.call, now_ns + CALL_WAIT_NS)
-        return [*effects, self._send(sender, ask, waiting)]
+        return [*effects, self._send(sender, ask, call.call, now_ns)]
 
     def _why_not_trusted(self, call: Called, request: TakeControl, now_ns: int) -> str:
         right = hmac.compare_digest(request.code.strip().encode(), self._code.encode())
@@ -187,14 +184,13 @@ class Viewers:
         up_m = goal_height_m(parameters, self._snapshot)
         goal_enu = (goal.at_enu[0], goal.at_enu[1], up_m)
         ask = ipc.Ask(0, "goto", goal_enu=goal_enu, yaw_deg=goal.yaw_deg)
-        waiting = _Waiting(request_words.label(ask), 0, now_ns + CALL_WAIT_NS)
-        return [self._send(message.viewer, ask, waiting)]
+        return [self._send(message.viewer, ask, 0, now_ns)]
 
-    def _send(self, sender: int, ask: ipc.Ask, waiting: _Waiting) -> Send:
+    def _send(self, sender: int, ask: ipc.Ask, call: int, now_ns: int) -> Send:
         connection = self._connections[sender]
-        connection.last_id += 1
-        connection.waiting[connection.last_id] = waiting
-        return Send(sender, msgspec.structs.replace(ask, id=connection.last_id))
+        sent = connection.talk.ask(ask).sent
+        connection.waiting[sent.id] = _Waiting(call, now_ns + CALL_WAIT_NS)
+        return Send(sender, sent)
 
     def _bucket(self, viewer: int, now_ns: int) -> _Bucket:
         known = self._buckets.get(viewer)
@@ -215,21 +211,24 @@ class Viewers:
     # ---------------------------------------------------------------------------- answers
 
     def _told(self, viewer: int, event: ipc.Event) -> list[Effect]:
-        match event:
-            case ipc.Snapshot():
-                self._snapshot = event
-            case ipc.VerdictEvent():
-                return self._verdict(viewer, event)
-            case ipc.EndingEvent():
-                return self._ending(viewer, event)
-            case _:
-                pass
+        if isinstance(event, ipc.Snapshot):
+            self._snapshot = event
+        connection = self._connections.get(viewer)
+        tracked = connection.talk.told(event) if connection else None
+        if connection is None or tracked is None:
+            return []
+        if isinstance(event, ipc.VerdictEvent):
+            return self._verdict(connection, event, tracked.label)
+        if isinstance(event, ipc.EndingEvent) and event.id in connection.clicked:
+            connection.clicked.remove(event.id)
+            text = event_text.outcome_line(tracked.label, event)
+            return [Notice(text, warning=not tracked.completed)]
         return []
 
-    def _verdict(self, viewer: int, event: ipc.VerdictEvent) -> list[Effect]:
-        connection = self._connections.get(viewer)
-        waiting = connection.waiting.pop(event.id, None) if connection else None
-        if connection is None or waiting is None:
+    @staticmethod
+    def _verdict(connection: _Connection, event: ipc.VerdictEvent, label: str) -> list[Effect]:
+        waiting = connection.waiting.pop(event.id, None)
+        if waiting is None:
             return []
         sentence = event_text.refused_by_rule(event) or event.sentence or event.outcome
         accepted = event.outcome == "accepted"
@@ -237,15 +236,8 @@ class Viewers:
             answer = Answer(accepted, sentence, event.code, event.operation, event.numbers)
             return [Reply(waiting.call, answer)]
         if accepted:
-            connection.clicked[event.id] = waiting.label
-        return [Notice(event_text.verdict_line(waiting.label, event), warning=not accepted)]
-
-    def _ending(self, viewer: int, event: ipc.EndingEvent) -> list[Effect]:
-        connection = self._connections.get(viewer)
-        label = connection.clicked.pop(event.id, "") if connection else ""
-        if not label:
-            return []
-        return [Notice(event_text.outcome_line(label, event), warning=event.ended != "complete")]
+            connection.clicked.add(event.id)
+        return [Notice(event_text.verdict_line(label, event), warning=not accepted)]
 
     # ---------------------------------------------------------------------- going, waiting
 

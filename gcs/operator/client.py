@@ -101,7 +101,52 @@ def _ctrl_c_waits() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-class StationClient:
+class EventReader:
+    """What both ways share: a clock, a thread that reads, and the good-bye."""
+
+    def __init__(self) -> None:
+        self._bye: ipc.Bye | None = None
+        self._ended = False
+        self._send_lock = threading.Lock()
+        self._listener: threading.Thread | None = None
+
+    def now_s(self) -> float:
+        """The clock that time-outs of an operator's program are measured on."""
+        return time.monotonic()
+
+    def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
+        """Wait until the station says something, one of `also` is readable, or the time is over.
+
+        The last event is a `StationEnded`; after it every poll returns it again.
+        """
+        raise NotImplementedError
+
+    def listen(self, on_event: Callable[[StationEvent], None]) -> None:
+        """Call `on_event` for every event, in a thread, until the station or the way to it has
+        ended."""
+        self._listener = threading.Thread(
+            target=self._listen, args=(on_event,), name="station-events", daemon=True
+        )
+        self._listener.start()
+
+    def _listen(self, on_event: Callable[[StationEvent], None]) -> None:
+        while True:
+            for event in self.poll(3600.0).events:
+                on_event(event)
+                if isinstance(event, StationEnded):
+                    return
+
+    def _event(self, line: bytes, whose: str) -> ipc.Event:
+        try:
+            event = ipc.decode_event(line)
+        except msgspec.DecodeError as error:
+            return ipc.Trouble(f"the {whose} wrote a line that is no event: {error}")
+        if isinstance(event, ipc.Bye):
+            self._bye = event
+        return event
+
+
+class StationClient(EventReader):
     """A station process that was started by this program, and ends with it.
 
     `poll` (or `listen`, which does it in a thread) brings its events; `send` writes one command
@@ -111,6 +156,7 @@ class StationClient:
 
     def __init__(self, process: subprocess.Popen[bytes], *, keep: bool = False) -> None:
         """`keep`: the station lives on without us (`StationConfig.keep`)."""
+        super().__init__()
         assert process.stdin is not None
         assert process.stdout is not None
         assert process.stderr is not None
@@ -121,10 +167,6 @@ class StationClient:
         self._events = LineSource(process.stdout.fileno())
         self._errors = LineSource(process.stderr.fileno())
         self._error_lines: deque[str] = deque(maxlen=STDERR_LINES)
-        self._bye: ipc.Bye | None = None
-        self._ended = False
-        self._send_lock = threading.Lock()
-        self._listener: threading.Thread | None = None
 
     @classmethod
     def start(
@@ -156,10 +198,6 @@ class StationClient:
         """Whether the process has not ended yet."""
         return self._process.poll() is None
 
-    def now_s(self) -> float:
-        """The clock that time-outs of an operator's program are measured on."""
-        return time.monotonic()
-
     def send(self, command: ipc.Command) -> bool:
         """Write one command at once.  False if the station has ended.  From any thread."""
         with self._send_lock:
@@ -171,10 +209,6 @@ class StationClient:
         return True
 
     def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
-        """Wait until the station says something, one of `also` is readable, or the time is over.
-
-        The last event is a `StationEnded`; after it every poll returns it again.
-        """
         if self._ended:
             return Polled([self._end()])
         sources: list[Readable] = [self._events, *also]
@@ -187,13 +221,6 @@ class StationClient:
         if self._events in ready:
             polled.events.extend(self._read_events())
         return polled
-
-    def listen(self, on_event: Callable[[StationEvent], None]) -> None:
-        """Call `on_event` for every event, in a thread, until the station has ended."""
-        self._listener = threading.Thread(
-            target=self._listen, args=(on_event,), name="station-events", daemon=True
-        )
-        self._listener.start()
 
     def close(self) -> StationEnded:
         """Wait for the process to end; send it a SIGTERM, then kill it, if it does not.
@@ -229,23 +256,8 @@ class StationClient:
             return False
         return True
 
-    def _listen(self, on_event: Callable[[StationEvent], None]) -> None:
-        while True:
-            for event in self.poll(3600.0).events:
-                on_event(event)
-                if isinstance(event, StationEnded):
-                    return
-
     def _read_events(self) -> list[StationEvent]:
-        events: list[StationEvent] = []
-        for line in self._events.read():
-            try:
-                event = ipc.decode_event(line)
-            except msgspec.DecodeError as error:
-                event = ipc.Trouble(f"the link wrote a line that is no event: {error}")
-            if isinstance(event, ipc.Bye):
-                self._bye = event
-            events.append(event)
+        events: list[StationEvent] = [self._event(line, "link") for line in self._events.read()]
         if self._events.ended:
             if self._bye is None or not self._bye.goes_on:
                 with contextlib.suppress(subprocess.TimeoutExpired):

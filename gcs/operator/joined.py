@@ -5,15 +5,13 @@ from __future__ import annotations
 import os
 import select
 import socket
-import threading
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
 
 from gcs import ipc
-from gcs.operator.client import Polled, Readable, StationEnded, StationEvent
+from gcs.operator.client import EventReader, Polled, Readable, StationEnded, StationEvent
 from gcs.shell import stations
 from gcs.shell.endpoints import EndpointError, parse_endpoint
 from gcs.shell.stations import Description
@@ -48,21 +46,18 @@ def station_on(links: Sequence[str]) -> Description | None:
     return None
 
 
-class JoinedStation:
+class JoinedStation(EventReader):
     """A connection to a running station, which goes on when this program leaves it.
 
     The same as `gcs.operator.client.StationClient` for whoever talks over it.
     """
 
     def __init__(self, connected: socket.socket, described: Description) -> None:
+        super().__init__()
         self.description = described
         connected.setblocking(False)
         self._socket = connected
         self._rest = b""
-        self._bye: ipc.Bye | None = None
-        self._ended = False
-        self._send_lock = threading.Lock()
-        self._listener: threading.Thread | None = None
 
     @classmethod
     def join(
@@ -79,10 +74,6 @@ class JoinedStation:
 
     def fileno(self) -> int:
         return self._socket.fileno()
-
-    def now_s(self) -> float:
-        """The clock that time-outs of an operator's program are measured on."""
-        return time.monotonic()
 
     def send(self, command: ipc.Command) -> bool:
         """Write one command at once.  False if the connection has ended.  From any thread."""
@@ -101,10 +92,6 @@ class JoinedStation:
         return True
 
     def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
-        """Wait until the station says something, one of `also` is readable, or the time is over.
-
-        The last event is a `StationEnded`; after it every poll returns it again.
-        """
         if self._ended:
             return Polled([self._end()])
         sources: list[Readable] = [self, *also]
@@ -113,13 +100,6 @@ class JoinedStation:
         if self in ready:
             polled.events.extend(self._read())
         return polled
-
-    def listen(self, on_event: Callable[[StationEvent], None]) -> None:
-        """Call `on_event` for every event, in a thread, until the connection has ended."""
-        self._listener = threading.Thread(
-            target=self._listen, args=(on_event,), name="station-events", daemon=True
-        )
-        self._listener.start()
 
     def close(self) -> StationEnded:
         """End the connection; the station goes on."""
@@ -137,13 +117,6 @@ class JoinedStation:
         self._ended = True
         self._socket.close()
 
-    def _listen(self, on_event: Callable[[StationEvent], None]) -> None:
-        while True:
-            for event in self.poll(3600.0).events:
-                on_event(event)
-                if isinstance(event, StationEnded):
-                    return
-
     def _read(self) -> list[StationEvent]:
         try:
             data = self._socket.recv(READ_BYTES)
@@ -152,20 +125,11 @@ class JoinedStation:
         except OSError:
             data = b""
         *lines, self._rest = (self._rest + data).split(b"\n")
-        events: list[StationEvent] = [self._event(line) for line in lines if line]
+        events: list[StationEvent] = [self._event(line, "station") for line in lines if line]
         if not data or len(self._rest) > MAX_REST_BYTES:
             self._ended = True
             events.append(self._end())
         return events
-
-    def _event(self, line: bytes) -> ipc.Event:
-        try:
-            event = ipc.decode_event(line)
-        except msgspec.DecodeError as error:
-            return ipc.Trouble(f"the station wrote a line that is no event: {error}")
-        if isinstance(event, ipc.Bye):
-            self._bye = event
-        return event
 
     def _end(self) -> StationEnded:
         return StationEnded(self._bye, None, "")
