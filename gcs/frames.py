@@ -39,6 +39,17 @@ def as_on_the_wire(value: float) -> float:
     return rounded
 
 
+def finite_or_nan(triple: tuple[float | None, float | None, float | None]) -> Vec3:
+    """JSON has no NaN: null stands for it, and the gate refuses it by name."""
+    a, b, c = (math.nan if value is None else as_on_the_wire(value) for value in triple)
+    return (a, b, c)
+
+
+def heading_rad(yaw_deg: float) -> float:
+    """Degrees of any number of turns -> -pi .. pi, as the wire carries it."""
+    return as_on_the_wire(math.radians(math.remainder(yaw_deg, 360.0)))
+
+
 def quat_from_euler(
     roll_rad: float, pitch_rad: float, yaw_rad: float
 ) -> tuple[float, float, float, float]:

@@ -14,7 +14,7 @@ goes to all.
 `docs/json.md` is this module as a page; `SCHEMA` counts up when a field or a meaning that is there
 changes, not when something is added.
 
-The words of requests and their arguments are one table (`gcs/operator/request_words.py`): typed
+The words of requests and their arguments are one table (`gcs/request_words.py`): typed
 lines and one-shot commands alike become `Ask`.
 """
 

@@ -6,7 +6,7 @@ from collections import deque
 from dataclasses import dataclass
 
 from gcs.operator.line_parser import Line, LineError, parse_line
-from gcs.operator.request_words import Quit, SendRequests
+from gcs.request_words import Quit, SendRequests
 from gcs.shell.pipes import LineSource
 
 MAX_WAITING_LINES = 10_000

@@ -88,10 +88,6 @@ def _load(target: str) -> click.Command:
     return command
 
 
-MOVES = frozenset({"control", "arm", "takeoff", "goto", "land", "rtl", "resume", "disarm", "mode"})
-"""Commands that move a vehicle or switch its motors: never offered for one that was mistyped."""
-
-
 class LazyGroup(click.Group):
     """A group that knows its commands' names and one-line helps without importing them."""
 
@@ -137,7 +133,10 @@ def _with_additions(entry: Entry) -> click.Command:
 def _unknown(name: str, known: Sequence[str]) -> str:
     import difflib
 
-    near = difflib.get_close_matches(name, [each for each in known if each not in MOVES], n=1)
+    from gcs.request_words import MOVES
+
+    harmless = [each for each in known if each not in MOVES]
+    near = difflib.get_close_matches(name, harmless, n=1)
     hint = f"did you mean {near[0]!r}?" if near else "`gcs --help` lists them"
     return f"no command {name!r}; {hint}"
 

@@ -6,6 +6,7 @@ from functools import partial
 
 import click
 
+from gcs import request_words
 from gcs.cli.options import (
     AS_JSON,
     LINK,
@@ -20,7 +21,7 @@ from gcs.cli.options import (
     asked_for,
     station_config,
 )
-from gcs.operator import line_parser, request_words
+from gcs.operator import line_parser
 
 EXITS = (
     "Exit codes: 0 done, 2 usage, 3 no vehicle, 5 refused by the vehicle, 6 refused by the gate, "
@@ -102,18 +103,11 @@ def _command(name: str) -> click.Command:
     )
 
 
-control = _command("control")
-arm = _command("arm")
-takeoff = _command("takeoff")
-goto = _command("goto")
-land = _command("land")
-rtl = _command("rtl")
-hold = _command("hold")
-abort = _command("abort")
-resume = _command("resume")
-disarm = _command("disarm")
-mode = _command("mode")
-photo = _command("photo")
+def __getattr__(name: str) -> click.Command:
+    """The command of a word, as `main.py` names it."""
+    if name not in request_words.WORD_BY_NAME:
+        raise AttributeError(name)
+    return _command(name)
 
 
 def _status(

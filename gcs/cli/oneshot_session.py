@@ -26,8 +26,8 @@ from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.interrupts import Interrupts
-from gcs.operator.request_words import NEEDS_CONTROL, SendRequests
 from gcs.operator.warning_filter import WARNING, WarningFilter
+from gcs.request_words import REQUESTS, SendRequests
 from gcs.shell.stations import Description
 
 Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
@@ -146,7 +146,7 @@ def sending(action: SendRequests, wait_s: float) -> Task:
     """The task of sending these requests, after taking control if one of them needs it."""
 
     def task(dialogue: Dialogue, display: ProgressDisplay) -> ExitCode:
-        if any(request.word in NEEDS_CONTROL for request in action.requests):
+        if any(REQUESTS[request.word].needs_control for request in action.requests):
             control = dialogue.take_control()
             if control is not None and not control.completed:
                 return control.exit_code

@@ -78,7 +78,7 @@ def stop(ctx: click.Context, number: int, as_json: bool) -> None:
     from gcs.cli import oneshot_session
     from gcs.cli.running import the_station
     from gcs.ipc import Ask
-    from gcs.operator.request_words import SendRequests
+    from gcs.request_words import SendRequests
 
     action = SendRequests((Ask(0, "abort", operation=number),))
     how = oneshot_session.OneShotConfig(10.0, 60.0, as_json, "operations stop", stops=True)

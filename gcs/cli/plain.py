@@ -7,10 +7,10 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from gcs import ipc
+from gcs import ipc, request_words
 from gcs.cli.line_queue import BadLine, LineQueue
 from gcs.exit_codes import ExitCode
-from gcs.operator import event_text, line_parser, request_words
+from gcs.operator import event_text, line_parser
 from gcs.operator.client import Polling, StationEnded
 from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import Dialogue, InterruptSource

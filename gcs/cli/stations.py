@@ -57,7 +57,7 @@ def end(ctx: click.Context, links: tuple[str, ...], take: bool, as_json: bool) -
     from gcs.cli import oneshot_session
     from gcs.cli.running import the_station
     from gcs.ipc import Ask
-    from gcs.operator.request_words import SendRequests
+    from gcs.request_words import SendRequests
 
     action = SendRequests((Ask(0, "station_end"),))
     how = oneshot_session.OneShotConfig(10.0, 10.0, as_json, "stations end", take=take, stops=True)

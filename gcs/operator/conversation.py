@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 import msgspec
 
-from gcs import ipc
+from gcs import ipc, request_words
 from gcs.exit_codes import ExitCode
 from gcs.gate.refusal import Code
 from gcs.gate.states import LandedState, State
-from gcs.operator import request_words
 from gcs.operator.client import StationEnded, StationEvent
 from gcs.operator.errors import ExitError
 from gcs.operator.station_loss import after_station_died, record_hint

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from gcs import ipc
+from gcs import ipc, request_words
 from gcs.enu_text import signed_enu
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
-from gcs.operator import request_words
 from gcs.operator.control_text import control_words
 from gcs.operator.errors import error_lines
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from gcs.operator.number_text import read_number
-from gcs.operator.request_words import (
+from gcs.request_words import (
     OTHER_NAMES,
     WORD_BY_NAME,
     WORDS,
@@ -17,7 +17,6 @@ from gcs.operator.request_words import (
     ActsAtOnce,
     Argument,
     ArgumentKind,
-    Values,
     Word,
 )
 
@@ -91,28 +90,26 @@ def parse_arguments(word: Word, typed: Sequence[str]) -> Action:
         raise _wrong(word, f"no option {unknown}")
     if not required <= len(typed) <= len(word.arguments):
         raise _wrong(word, f"expected {_expectation(word)}, got {len(typed) or 'nothing'}")
-    numbers: list[float] = []
-    name, switch, flagged = "", True, False
-    for argument, text in zip(word.arguments, typed, strict=False):
-        match argument.kind:
-            case (
-                ArgumentKind.NUMBER
-                | ArgumentKind.DEGREES
-                | ArgumentKind.SECONDS
-                | ArgumentKind.COUNT
-            ):
-                numbers.append(_number(word, argument, text))
-            case ArgumentKind.NAME | ArgumentKind.FILE:
-                name = text
-            case ArgumentKind.SWITCH:
-                if text not in ("on", "off"):
-                    raise _wrong(word, f"expected on or off, got {text!r}")
-                switch = text == "on"
-            case ArgumentKind.FLAG:
-                if text != argument.name:
-                    raise _wrong(word, f"expected {argument.name} or nothing, got {text!r}")
-                flagged = True
-    return word.build(Values(tuple(numbers), name, switch, flagged))
+    arguments = zip(word.arguments, typed, strict=False)
+    return word.action(*(_value(word, argument, text) for argument, text in arguments))
+
+
+def _value(word: Word, argument: Argument, text: str) -> float | str | bool:
+    match argument.kind:
+        case ArgumentKind.NAME | ArgumentKind.FILE:
+            return text
+        case ArgumentKind.SWITCH:
+            if text not in ("on", "off"):
+                raise _wrong(word, f"expected on or off, got {text!r}")
+            return text == "on"
+        case ArgumentKind.FLAG:
+            if text != argument.name:
+                raise _wrong(word, f"expected {argument.name} or nothing, got {text!r}")
+            return True
+        case ArgumentKind.COUNT:
+            return int(_number(word, argument, text))
+        case ArgumentKind.NUMBER | ArgumentKind.DEGREES | ArgumentKind.SECONDS:
+            return _number(word, argument, text)
 
 
 def _find(tokens: list[str]) -> tuple[Word, list[str]]:

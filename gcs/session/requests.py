@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from gcs import ipc
-from gcs.frames import Vec3, as_on_the_wire, ned_from_enu
-from gcs.gate import requests
+from gcs.gate.requests import Request, SetMode
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import Autopilot, mode_named
+from gcs.request_words import REQUESTS, BadAskError
 
 FIRST = 1
 """The operator's program that started the station."""
@@ -42,70 +41,25 @@ def client_of(source: str) -> int:
     return int(source.removeprefix("operator") or 1)
 
 
-class BadAskError(ValueError):
-    """The line is no request at all (a word or an argument is missing or unknown)."""
-
-
-def request_of(ask: ipc.Ask, autopilot: Autopilot | None) -> requests.Request:
+def request_of(ask: ipc.Ask, autopilot: Autopilot | None) -> Request:
     """What the gate is asked for.  Raises BadAskError; mission transfers are not for the gate."""
-    match ask.word:
-        case "control":
-            return requests.TakeControl()
-        case "arm":
-            return requests.Arm()
-        case "disarm":
-            return requests.Disarm(ask.force)
-        case "takeoff":
-            return requests.TakeOff(math.nan if ask.up_m is None else ask.up_m)
-        case "goto":
-            if ask.goal_enu is None:
-                raise BadAskError("goto needs a goal: east, north, up")
-            goal_ned = ned_from_enu(finite_or_nan(ask.goal_enu))
-            return requests.GoTo(
-                goal_ned, None if ask.yaw_deg is None else heading_rad(ask.yaw_deg)
-            )
-        case "land":
-            return requests.Land()
-        case "rtl":
-            return requests.ReturnHome()
-        case "hold":
-            return requests.Hold()
-        case "abort":
-            return requests.Abort()
-        case "resume":
-            return requests.Resume()
-        case "photo":
-            return requests.TakePhoto()
-        case "fence":
-            return requests.SwitchFence(ask.on)
-        case "mission_start":
-            return requests.StartMission()
-        case "stream_begin":
-            return requests.BeginStream()
-        case "stream_end":
-            return requests.EndStream()
-        case "mode":
-            mode = mode_named(autopilot, ask.mode) if autopilot else None
-            if mode is None:
-                names = ", ".join(known.name for known in autopilot.modes) if autopilot else ""
-                raise BadAskError(f"no mode {ask.mode!r} here; there are: {names or 'none'}")
-            sent = autopilot.mode_of_meaning.get(mode.meaning, mode.name) if autopilot else ""
-            if sent != mode.name:
-                return requests.SetMode(mode.name, FlightMode.OTHER, instead=sent)
-            return requests.SetMode(mode.name, mode.meaning)
-        case _:
-            raise BadAskError(f"no such request: {ask.word!r}")
+    word = REQUESTS.get(ask.word)
+    if ask.word == "mode":
+        return _mode(ask.mode, autopilot)
+    if word is None or word.gate is None:
+        raise BadAskError(f"no such request: {ask.word!r}")
+    return word.gate(ask) if callable(word.gate) else word.gate
 
 
-def finite_or_nan(triple: ipc.Maybe3) -> Vec3:
-    """JSON has no NaN: null stands for it, and the gate refuses it by name."""
-    a, b, c = (math.nan if value is None else as_on_the_wire(value) for value in triple)
-    return (a, b, c)
-
-
-def heading_rad(yaw_deg: float) -> float:
-    """Degrees of any number of turns -> -pi .. pi, as the wire carries it."""
-    return as_on_the_wire(math.radians(math.remainder(yaw_deg, 360.0)))
+def _mode(name: str, autopilot: Autopilot | None) -> SetMode:
+    mode = mode_named(autopilot, name) if autopilot else None
+    if mode is None:
+        names = ", ".join(known.name for known in autopilot.modes) if autopilot else ""
+        raise BadAskError(f"no mode {name!r} here; there are: {names or 'none'}")
+    sent = autopilot.mode_of_meaning.get(mode.meaning, mode.name) if autopilot else ""
+    if sent != mode.name:
+        return SetMode(mode.name, FlightMode.OTHER, instead=sent)
+    return SetMode(mode.name, mode.meaning)
 
 
 class Requests:

@@ -15,15 +15,12 @@ from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Code, Refusal
+from gcs.request_words import ALWAYS_HEARD
 from gcs.session.effects import Emit
 from gcs.session.requests import FIRST
 from gcs.session.work import STATION, ForOwner, GateInput, Log, Work
 
 NOBODY = 0
-ALWAYS_HEARD = frozenset(
-    {"abort", "hold", "land", "rtl", "disarm", "station_take", "station_release"}
-)
-"""Requests of any operator, in control or not."""
 
 LEAVING_NS = 3_000_000_000
 """How long an operator who leaves waits until the vehicle is seen to hold."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final
 
 import msgspec
 
@@ -11,13 +10,11 @@ from gcs import ipc
 from gcs.bridge.bridge import Bridge
 from gcs.bridge.judge.climbs import HEIGHT_WRITTEN
 from gcs.protocol.effects import Address
+from gcs.request_words import STOPS
 from gcs.session.work import STATION, ForOwner, Work
 from gcs.station.operators import Operators
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.gate_port import NOT_FLYING
-
-STOPS: Final = frozenset({"abort", "hold", "land", "rtl"})
-"""Where an operator names no vehicle, these are for every one that flies."""
 
 
 def line(

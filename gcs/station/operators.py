@@ -19,9 +19,10 @@ from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import Abort, SetMode, StartMission
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC, Autopilot
+from gcs.request_words import BadAskError, Doer, doer_of
 from gcs.session import announcements
 from gcs.session.effects import Emit, ShowTopics
-from gcs.session.requests import FIRST, BadAskError, Requests, client_of, request_of
+from gcs.session.requests import FIRST, Requests, client_of, request_of
 from gcs.session.setup import Setup
 from gcs.session.speedup_waits import Times
 from gcs.session.work import (
@@ -41,7 +42,6 @@ from gcs.station.clients import NOBODY, Clients
 from gcs.station.operations import Operations
 from gcs.station.streams import BEGIN, Streams
 from gcs.station.subscriptions import Subscriptions
-from gcs.vehicle.missions.missions import MISSION_WORDS, TRANSFER_WORDS
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.frame import Frame
 from gcs.wire.messages import CommandLong
@@ -49,7 +49,6 @@ from gcs.wire.messages import CommandLong
 NODE = "link"
 LOGGED_LETTERS = 40
 """Of a word that may be anything; all operators read the log."""
-STATION_WORDS = frozenset({"station_take", "station_release", "station_end"})
 
 
 class Operators:
@@ -178,16 +177,17 @@ class Operators:
         refusal = self._clients.refusal(client, ask)
         if refusal is not None:
             return self._refuse(self._requests.open(ask, client), ask, refusal)
-        if ask.word in STATION_WORDS:
+        doer = doer_of(ask.word)
+        if doer is Doer.STATION:
             return self._ask_station(client, ask, now_ns)
         if ask.operation:
             return self._ask_stop(client, ask)
         if no_vehicle is not None:
             return self._refuse(self._requests.open(ask, client), ask, no_vehicle)
-        if ask.word in MISSION_WORDS:
+        if doer in (Doer.JOB, Doer.TRANSFER):
             given = self._give_where_free(client, ask, now_ns)
             return [*given, AskMission(self._requests.open(ask, client), ask)]
-        if ask.word == "orbit":
+        if doer is Doer.ORBIT:
             given = self._give_where_free(client, ask, now_ns)
             return [*given, AskOrbit(self._requests.open(ask, client), ask, client)]
         try:
@@ -263,7 +263,7 @@ class Operators:
             ended = "is not known" if operation is None else f"has ended: {operation.state}"
             refusal = Refusal(Code.NOT_RUNNING, f"operation {ask.operation} {ended}")
             return self._refuse(request_id, ask, refusal)
-        if operation.asked.word in TRANSFER_WORDS:
+        if doer_of(operation.asked.word) is Doer.TRANSFER:
             return [StopTransfer(ask.operation), *_done(request_id, "the transfer is stopped")]
         return [AskGate(request_id, Abort())]
 

@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from gcs import ipc
-from gcs.frames import Vec3, as_on_the_wire, ned_from_enu
+from gcs.frames import Vec3, as_on_the_wire, finite_or_nan, heading_rad, ned_from_enu
 from gcs.gate.attitude import Attitude, attitude_of
 from gcs.gate.effects import StreamVerdict
 from gcs.gate.inputs import StreamSeen
 from gcs.gate.refusal import Refusal
 from gcs.session import announcements
-from gcs.session.requests import client_of, finite_or_nan, heading_rad, source_of
+from gcs.session.requests import client_of, source_of
 from gcs.session.work import Work
 
 EPISODE_NS: Final = 5_000_000_000

@@ -14,11 +14,11 @@ from mcap_protobuf.decoder import DecoderFactory
 from gcs import ipc
 from gcs.cli.demo.script import FAILSAFES_ON, MISSION, SCRIPT, Step
 from gcs.operator.line_parser import parse_line
-from gcs.operator.request_words import SendRequests
 from gcs.policy_file import load_policy
 from gcs.record.viewer.layout import PURPOSES, Purpose, layout_for
 from gcs.record.writer import Recorder
 from gcs.report import AttachmentItem, FsaItem, MetadataItem
+from gcs.request_words import SendRequests
 from gcs.resources import find
 from gcs.session.inputs import OperatorLine
 from tests.loopback.flight import PERSONALITIES, Flight, Personality

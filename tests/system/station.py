@@ -14,7 +14,7 @@ from gcs.operator.client import StationClient, StationEnded
 from gcs.operator.conversation import TrackedRequest
 from gcs.operator.dialogue import Dialogue
 from gcs.operator.line_parser import parse_line
-from gcs.operator.request_words import SendRequests
+from gcs.request_words import SendRequests
 from tests.system.patience import PATIENT_POLICY, PATIENT_S
 from tests.system.vehicle_program import vehicle_sim
 from tests.system.wire_tap import WireTap

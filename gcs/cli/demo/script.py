@@ -11,7 +11,7 @@ from gcs.config import SimConfig, StationConfig
 from gcs.operator.conversation import TrackedRequest
 from gcs.operator.dialogue import Dialogue
 from gcs.operator.line_parser import parse_line
-from gcs.operator.request_words import SendRequests
+from gcs.request_words import SendRequests
 
 STEP_WAIT_S: Final = 40.0
 COMPLETE: Final = "complete"

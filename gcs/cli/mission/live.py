@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypedDict, Unpack
+from typing import TypedDict, Unpack
 
 import click
 
@@ -23,9 +23,6 @@ from gcs.cli.options import (
 )
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
-
-if TYPE_CHECKING:
-    from gcs.ipc import Ask
 
 EXITS = (
     "Exit codes: 0 done, 3 no vehicle, 4 bad file, 5 refused by the vehicle, 6 refused by the "
@@ -64,10 +61,7 @@ def upload(
     **to: Unpack[ToVehicle],
 ) -> None:
     """Verify a mission file, send it to the vehicle, read it back and compare."""
-    from gcs.ipc import Ask
-
-    requests = (Ask(0, "mission_upload", path=_readable(file)),)
-    _run(requests, **to)
+    _run("mission upload", _readable(file), **to)
 
 
 @click.command(epilog=f"Example: gcs mission download on_board.plan\n\n{EXITS}")
@@ -90,14 +84,11 @@ def download(
 
     The suffix chooses the format: .plan, .waypoints or .txt.
     """
-    from gcs.ipc import Ask
-
     if file is not None and output is not None:
         raise ExitError(ExitCode.USAGE, f"one file, not two: {file} and {output}")
     path = file or output or "mission.plan"
     _check_output(path, force)
-    requests = (Ask(0, "mission_download", path=path),)
-    _run(requests, **to)
+    _run("mission download", path, **to)
 
 
 @click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
@@ -108,10 +99,7 @@ def fly(
     **to: Unpack[ToVehicle],
 ) -> None:
     """Upload a mission file, then start it and wait for its end."""
-    from gcs.ipc import Ask
-
-    requests = (Ask(0, "mission_upload", path=_readable(file)), Ask(0, "mission_start"))
-    _run(requests, **to)
+    _run("mission fly", _readable(file), **to)
 
 
 @click.command("set-current", epilog=f"Example: gcs mission set-current 3\n\n{EXITS}")
@@ -126,10 +114,7 @@ def set_current(
 
     In the air only, and while no mission is flown; the start itself verifies the way there.
     """
-    from gcs.ipc import Ask
-
-    requests = (Ask(0, "mission_set_current", item=item),)
-    _run(requests, **to)
+    _run("mission set-current", item, **to)
 
 
 @click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
@@ -138,9 +123,7 @@ def clear(
     **to: Unpack[ToVehicle],
 ) -> None:
     """Remove the mission on board."""
-    from gcs.ipc import Ask
-
-    _run((Ask(0, "mission_clear"),), **to)
+    _run("mission clear", **to)
 
 
 def _check_output(output: str, force: bool) -> None:
@@ -173,11 +156,13 @@ def _readable(file: str) -> str:
     return str(resources.find(file))
 
 
-def _run(requests: tuple[Ask, ...], **to: Unpack[ToVehicle]) -> None:
+def _run(word: str, *arguments: str | int, **to: Unpack[ToVehicle]) -> None:
     from gcs.cli import oneshot_session
-    from gcs.operator.request_words import SendRequests, label
+    from gcs.request_words import WORD_BY_NAME, SendRequests, label
 
-    for request in requests:
+    action = WORD_BY_NAME[word].action(*arguments)
+    assert isinstance(action, SendRequests)
+    for request in action.requests:
         UTF8.convert(request.path, None, None)
     setup = station_config(
         to["links"],
@@ -188,7 +173,7 @@ def _run(requests: tuple[Ask, ...], **to: Unpack[ToVehicle]) -> None:
         vehicle=to["vehicle"],
         sign_key=to["sign_key"],
     )
-    what = label(requests[0])
+    what = label(action.requests[0])
     how = oneshot_session.OneShotConfig(
         to["timeout"],
         to["wait"],
@@ -197,6 +182,6 @@ def _run(requests: tuple[Ask, ...], **to: Unpack[ToVehicle]) -> None:
         take=to["take"],
         wanted=asked_for(),
     )
-    task = oneshot_session.sending(SendRequests(requests), to["wait"])
+    task = oneshot_session.sending(action, to["wait"])
     code = oneshot_session.run(setup, how, task)
     click.get_current_context().exit(code)

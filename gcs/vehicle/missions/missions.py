@@ -55,10 +55,6 @@ from gcs.wire.messages import (
     MissionRequestList,
 )
 
-TRANSFER_WORDS = frozenset(
-    {"mission_upload", "mission_download", "mission_clear", "mission_set_current"}
-)
-MISSION_WORDS = TRANSFER_WORDS | {"mission_start", "mission_check"}
 KINDS = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)
 
 PLAN_RECEIVED = "Flight plan received"
@@ -148,7 +144,7 @@ class Missions:
         plan: ClientPlan | None = None,
         kind: MissionType = MissionType.MISSION,
     ) -> list[Work]:
-        """A transfer (`TRANSFER_WORDS`), or the start of the mission in whatever word.
+        """A transfer, or the start of the mission in whatever word.
 
         `plan` is what a MAVLink client sent, in place of a file; `kind` is which plan it is about.
         """

@@ -15,7 +15,7 @@ from gcs.exit_codes import ExitCode
 from gcs.operator.dialogue import Dialogue
 from gcs.operator.errors import ExitError
 from gcs.operator.line_parser import parse_line
-from gcs.operator.request_words import SendRequests
+from gcs.request_words import SendRequests
 from tests.unit.operator.fake_station import (
     LANDED_KNOWN_S,
     FakeConnection,

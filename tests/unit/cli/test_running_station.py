@@ -16,8 +16,8 @@ from gcs.operator import joined
 from gcs.operator.client import StationClient
 from gcs.operator.event_text import operation_line
 from gcs.operator.line_parser import parse_line
-from gcs.operator.request_words import SendRequests
 from gcs.policy_digest import policy_digest
+from gcs.request_words import SendRequests
 from gcs.shell.stations import Description
 from tests.unit.cli.command_line import gcs
 from tests.unit.operator.fake_station import FakeConnection, FakeStation

@@ -18,8 +18,8 @@ from gcs.live.services import (
     request_of,
     schema_of,
 )
+from gcs.request_words import ALWAYS_HEARD
 from gcs.session.requests import request_of as gate_request_of
-from gcs.station.clients import ALWAYS_HEARD
 
 AT = ipc.Snapshot(
     0, "HOVERING", "OURS", "NOMINAL", [], 0.0, "", True, 0.0, pos_enu=(1.0, 2.0, 3.456)

@@ -6,10 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs import ipc
-from gcs.operator import request_words
+from gcs import ipc, request_words
 from gcs.operator.line_parser import LineError, parse_line
-from gcs.operator.request_words import Quit, SendRequests, ShowHelp, ShowState, Wait
+from gcs.request_words import Quit, SendRequests, ShowHelp, ShowState, Wait
 
 
 def requests(line: str) -> tuple[ipc.Ask, ...]:

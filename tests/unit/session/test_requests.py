@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import pytest
 
 from gcs import ipc
-from gcs.frames import as_on_the_wire
+from gcs.frames import as_on_the_wire, heading_rad
 from gcs.gate.requests import Abort, GoTo, SetMode, TakeOff
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import ARDUPILOT, PX4
-from gcs.session.requests import BadAskError, Requests, heading_rad, request_of
+from gcs.request_words import REQUESTS, BadAskError, Doer
+from gcs.session.requests import Requests, request_of
 
 
 def test_a_goal_is_turned_into_ned_once() -> None:
@@ -70,3 +72,23 @@ def test_a_request_is_known_until_it_is_over() -> None:
     assert requests.get(second).source == "operator 2"
     assert requests.open_count == 1
     assert request_of(ipc.Ask(1, "abort"), PX4) == Abort()
+
+
+def test_the_protocol_names_the_words_of_the_table_and_no_other() -> None:
+    text = ipc.Ask.__doc__ or ""
+    named = text[text.index("one of: ") + len("one of: ") :].split(".")[0].split()
+    assert sorted(named) == sorted(REQUESTS)
+
+
+def test_what_the_gate_does_is_asked_of_the_gate_and_nothing_else_is() -> None:
+    """But a mode, which needs to know the autopilot, and a start, which is prepared first."""
+    of_gate = {name for name, word in REQUESTS.items() if word.doer is Doer.GATE}
+    with_request = {name for name, word in REQUESTS.items() if word.gate is not None}
+    assert of_gate - with_request == {"mode"}
+    assert with_request - of_gate == {"mission_start"}
+
+
+def test_the_arguments_of_a_word_are_fields_of_a_request() -> None:
+    fields = {field.name for field in msgspec.structs.fields(ipc.Ask)}
+    for word in REQUESTS.values():
+        assert word.build is not None or fields >= {each.field for each in word.arguments}

@@ -10,29 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs import ipc
+from gcs.request_words import REQUESTS
 from gcs.session.inputs import OperatorJoined, OperatorLine, OperatorNoise
 from tests.unit.station import told
 from tests.unit.station.station import Script
 
-WORDS = (
-    *[
-        "control",
-        "arm",
-        "disarm",
-        "takeoff",
-        "goto",
-        "land",
-        "rtl",
-        "hold",
-        "abort",
-        "resume",
-        "photo",
-        "mode",
-        "fence",
-    ],
-    *["mission_start", "mission_upload", "mission_download", "mission_clear", "station_end"],
-    *["stream_begin", "stream_end"],
-)
+WORDS = sorted(REQUESTS.keys() - {"station_take"})
 STOPS = {(176, 4.0, 3.0), (176, 4.0, 5.0), (176, 4.0, 6.0)}
 """DO_SET_MODE to px4's AUTO.LOITER, AUTO.RTL and AUTO.LAND."""
 LAND, DISARM = 21, 400
