@@ -80,7 +80,7 @@ class Script:
         self.reports_position = True
         self.reports_heartbeat = True
         self.reports_landed = True
-        self._next_id = 0
+        self.asked = 0  # the id of the last request
         self._ticks = 0
 
     # ----------------------------------------------------------------------------- inputs
@@ -105,9 +105,9 @@ class Script:
         self.feed(VerifierChanged(verifier))
 
     def ask(self, request: Request, source: str = "keyboard") -> int:
-        self._next_id += 1
-        self.feed(Requested(self._next_id, source, request))
-        return self._next_id
+        self.asked += 1
+        self.feed(Requested(self.asked, source, request))
+        return self.asked
 
     def goto(self, east: float, north: float, up: float) -> int:
         return self.ask(GoTo(ned_from_enu((east, north, up))))

@@ -2,432 +2,151 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 
-from gcs.gate.effects import CommandKind, Say
-from gcs.gate.inputs import CommandEnded, MissionLoaded, MissionSeen, PhotoSeen
-from gcs.gate.requests import (
-    Abort,
-    Arm,
-    Disarm,
-    Hold,
-    Land,
-    Request,
-    ReturnHome,
-    StartMission,
-    TakeOff,
-)
-from gcs.gate.states import Control, FlightMode, State
-from tests.unit.gate.reactions import (
-    HELD,
-    Reaction,
-    flight,
-    reaction,
-    remember,
-    state_of,
-    streams,
-    take_off,
-)
-from tests.unit.gate.script import Script, policy
-from tests.unit.gate.situations import UP, lead_to
-
-REFUSED, SILENT = 2, None
-GIVEN_UP = (State.EXTERNAL, Control.NONE, [CommandKind.HOLD])
-
-COMMAND = {
-    State.GROUNDED: CommandKind.ARM,
-    State.TAKING_OFF: CommandKind.TAKE_OFF,
-    State.HOVERING: CommandKind.GUIDED,
-    State.TAKING_PICTURE: CommandKind.PHOTO,
-    State.FLYING_MISSION: CommandKind.START_MISSION,
-    State.RETURNING: CommandKind.RETURN,
-    State.LANDING: CommandKind.LAND,
-    State.HOLDING: CommandKind.HOLD,
-    State.EXTERNAL: CommandKind.FORCE_DISARM,
-}
-"""What a state waits for an answer to."""
-
-COMES_DOWN: dict[State, Request] = {State.RETURNING: ReturnHome(), State.LANDING: Land()}
-
-LEADS_TO = {
-    State.GROUNDED: (State.GROUNDED, Control.NONE, []),
-    State.TAKING_OFF: HELD,
-    State.HOVERING: GIVEN_UP,
-    State.TAKING_PICTURE: (State.HOVERING, Control.OURS, []),
-    State.FLYING_MISSION: HELD,
-    State.RETURNING: HELD,
-    State.LANDING: HELD,
-    State.EXTERNAL: (State.EXTERNAL, Control.NONE, []),
-}
-"""What follows where the vehicle does not do it: a vehicle of ours that would fly on by itself, or
-whose control we asked for, is held; with a picture missing, hovering goes on."""
+from gcs.gate.effects import CommandKind
+from gcs.gate.inputs import CommandEnded
+from tests.unit.gate.rows import Flight, Row, rows
 
 
-def asked(state: State) -> tuple[Script, int]:
-    """The command has left, and is not answered; the vehicle shows the mode it was in before."""
-    if state in COMES_DOWN:
-        script, _ = flight(State.HOVERING)
-        script.wait(2.0)
-        return script, script.ask(COMES_DOWN[state])
-    script, request_id = flight(state)
-    if state is State.HOVERING:
-        script.wait(1.2)
-    return script, request_id
+def nobodys_answers(flight: Flight) -> None:
+    for result in (0, 2, None):
+        flight.script.feed(CommandEnded(-1, CommandKind.LAND, result))
 
 
-@pytest.mark.parametrize("state", COMMAND)
-def test_an_acknowledgement_moves_nothing(state: State) -> None:
-    script, request_id = asked(state)
-    control = script.gate.control
-    told = CommandEnded(request_id, COMMAND[state], 0)
-    assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(state, control, [], "")
+ROWS = rows(
+    """
+# An acknowledgement moves nothing.
+<GROUNDED, TAKING_OFF, TAKING_PICTURE, FLYING_MISSION, HOLDING, EXTERNAL>
+    | accepts <ARM, TAKE_OFF, PHOTO, START_MISSION, HOLD, FORCE_DISARM> | =
+HOVERING; wait 1.2 | accepts GUIDED | =
+ours; <return, land> | accepts <RETURN, LAND> | =
+# A refusal or no answer ends the request.  What would fly on by itself is held; with a picture
+# ... missing, hovering goes on; one whose control we asked for is given up.
+GROUNDED | refuses ARM | =, it aborted VEHICLE_REFUSED
+GROUNDED | ignores ARM | =, it timed out NO_ANSWER
+TAKING_OFF; remembers mode=HOLD
+    | <refuses, ignores> TAKE_OFF
+    | HOLDING OURS, sends HOLD, it <aborted VEHICLE_REFUSED, timed out NO_ANSWER>
+HOVERING; wait 1.2
+    | <refuses, ignores> GUIDED
+    | EXTERNAL NONE, sends HOLD, it <aborted VEHICLE_REFUSED, timed out NO_ANSWER>
+TAKING_PICTURE
+    | <refuses, ignores> PHOTO
+    | HOVERING OURS, it <aborted VEHICLE_REFUSED, timed out NO_ANSWER>
+FLYING_MISSION; remembers mode=HOLD
+    | <refuses, ignores> START_MISSION
+    | HOLDING OURS, sends HOLD, it <aborted VEHICLE_REFUSED, timed out NO_ANSWER>
+ours; return
+    | <refuses, ignores> RETURN
+    | HOLDING OURS, sends HOLD, return <aborted VEHICLE_REFUSED, timed out NO_ANSWER>
+ours; land
+    | <refuses, ignores> LAND
+    | HOLDING OURS, sends HOLD, land <aborted VEHICLE_REFUSED, timed out NO_ANSWER>
+EXTERNAL
+    | <refuses, ignores> FORCE_DISARM | =, it <aborted VEHICLE_REFUSED, timed out NO_ANSWER>
+# A lost answer is nothing where the vehicle shows that it does it, a refusal is one.
+ours; return; shows {RETURN, LAND} | ignores RETURN | =
+ours; return; shows {RETURN, LAND}
+    | refuses RETURN | HOLDING OURS, sends HOLD, return aborted VEHICLE_REFUSED
+ours; land; shows LAND | ignores LAND | =
+ours; land; shows LAND | refuses LAND | HOLDING OURS, sends HOLD, land aborted VEHICLE_REFUSED
+<TAKING_OFF, FLYING_MISSION> | ignores <TAKE_OFF, START_MISSION> | =
+<TAKING_OFF, FLYING_MISSION>
+    | refuses <TAKE_OFF, START_MISSION> | HOLDING OURS, sends HOLD, it aborted VEHICLE_REFUSED
+# What did not leave the ground stays there; a command that may come late finds it disarmed.
+climb; remembers mode=HOLD | refuses TAKE_OFF | GROUNDED NONE, it aborted VEHICLE_REFUSED
+climb; remembers mode=HOLD
+    | ignores TAKE_OFF | GROUNDED NONE, sends HOLD DISARM, it timed out NO_ANSWER
+armed; loaded 4; mission
+    | refuses START_MISSION | GROUNDED NONE, mission aborted VEHICLE_REFUSED
+armed; loaded 4; mission
+    | ignores START_MISSION | GROUNDED NONE, sends HOLD DISARM, mission timed out NO_ANSWER
+# A take-off that nobody answers and that comes late is held.
+in TAKING_OFF; ignores TAKE_OFF | is IN_AIR | HOLDING OURS, sends HOLD
+# With a position too old the stream ends and the vehicle is held.
+<TAKING_PICTURE, FLYING_MISSION, TAKING_OFF>; no positions; wait 1.2
+    | refuses <PHOTO, START_MISSION, TAKE_OFF>
+    | STALE OURS, sends HOLD, it aborted VEHICLE_REFUSED; silent | positions; tick | HOLDING OURS
+<TAKING_PICTURE, FLYING_MISSION, TAKING_OFF>; no positions; wait 1.2
+    | ignores <PHOTO, START_MISSION, TAKE_OFF>
+    | STALE OURS, sends HOLD, it timed out NO_ANSWER; silent | positions; tick | HOLDING OURS
+# An arming that fails there just ends.
+GROUNDED; no positions; wait 1.2 | refuses ARM | STALE NONE, it aborted VEHICLE_REFUSED
+GROUNDED; no positions; wait 1.2 | ignores ARM | STALE NONE, it timed out NO_ANSWER
+# An answer that nobody waits for is told and not acted on.
+{GROUNDED, TAKING_OFF, HOVERING, TAKING_PICTURE, FLYING_MISSION, RETURNING, LANDING, HOLDING}
+    | nobodys-answers | =; same; setpoints none
+{EXTERNAL, MOVING, STALE, NO_VEHICLE} | nobodys-answers | =; same; setpoints none
+
+# A hold that is not answered is asked for again at the next second.
+HOLDING | ignores HOLD | = | wait 1.1 | =, sends HOLD
+{STALE, NO_VEHICLE}; abort | ignores HOLD | = | wait 1.1 | =, sends HOLD
+# A refusal of the gate's own hold ends no request, and it is asked again.
+TAKING_OFF; refuses TAKE_OFF | refuses HOLD; wait 1.1 | HOLDING OURS, sends HOLD
+    | refuses HOLD; wait 1.1 | =, sends HOLD
+
+# A disarm that is refused on the ground just ends, with an old position too.
+armed; disarm | refuses DISARM | =, disarm aborted VEHICLE_REFUSED
+armed; disarm; no positions; wait 1.2 | refuses DISARM | STALE NONE, disarm aborted VEHICLE_REFUSED
+armed; disarm | ignores DISARM | =, disarm timed out NO_ANSWER
+# Where a take-off may come yet the vehicle is held.
+climb; disarm | refuses DISARM | GROUNDED NONE, sends HOLD, disarm aborted VEHICLE_REFUSED
+              | wait 1.1 | =, sends HOLD
+climb; no positions; wait 1.2; disarm
+    | refuses DISARM | STALE NONE, sends HOLD, disarm aborted VEHICLE_REFUSED
+# So is one that is not known to stand.
+armed; no landed; wait 4; disarm
+    | refuses DISARM | HOLDING OURS, sends HOLD, disarm aborted VEHICLE_REFUSED
+# A disarm of a vehicle that was never seen armed is over with its answer and a heartbeat.
+GROUNDED; {disarm, force, abort}
+    | shows disarmed | = | accepts DISARM | = | shows disarmed | =, $ complete
+GROUNDED | accepts ARM; shows disarmed | =
+# One answer ends one command.
+climb | abort | GROUNDED NONE, sends HOLD DISARM, it aborted OPERATOR, abort accepted;
+      ... awaits HOLD DISARM
+      | accepts HOLD | =; awaits DISARM | fails DISARM
+    | =, sends HOLD, abort aborted VEHICLE_REFUSED
+
+# A picture that nobody asked for changes nothing; ours ends the request, the very first one too.
+{STATES -TAKING_PICTURE, -NO_VEHICLE} | photo {seen, failed} 4 | =
+TAKING_PICTURE | photo <seen, failed> <4, 4>
+               | HOVERING OURS, it <complete, aborted VEHICLE_REFUSED>
+TAKING_PICTURE | photo seen 0 | HOVERING OURS, it complete
+in HOVERING; photo seen 7; photo | photo seen 7 | = | photo seen 8 | HOVERING OURS, photo complete
+
+# Items of a mission that does not fly change nothing, and neither does one of ours.
+{STATES -FLYING_MISSION, -NO_VEHICLE} | {item 3 4, item 3 4 finished} | =
+FLYING_MISSION | item 3 5 | =
+# After the last one control is taken at the place; px4 shows its end by the hold mode.
+FLYING_MISSION | item 4 5 finished | HOVERING TAKING; streams
+    | wait 1.1; shows GUIDED | HOVERING OURS, sends GUIDED, it complete
+FLYING_MISSION; item 4 5 | shows HOLD | HOVERING TAKING
+# Where the place does not clear, or it is not known to fly, it is complete and held.
+max_up_m=10: FLYING_MISSION; item 4 5; at 0 0 12
+    | {item 4 5 finished, shows HOLD} | HOLDING OURS, sends HOLD, it complete
+FLYING_MISSION; item 4 5; no landed; wait 4
+    | {item 4 5 finished, shows HOLD} | HOLDING OURS, sends HOLD, it complete
+# On the ground the landing completes it.
+armed; loaded 4; mission; shows MISSION | item 3 4 finished | FLYING_MISSION OURS
+# The hold mode is its end at the last item or past it, and not before, nor of another mission.
+FLYING_MISSION; item {4 5, 5 5, 0 1} | shows HOLD | HOVERING TAKING
+FLYING_MISSION; item {3 5, 0 2, 0 0, 3 0} | shows HOLD | EXTERNAL NONE, it taken over MODE_CHANGED
+FLYING_MISSION | shows HOLD | EXTERNAL NONE, it taken over MODE_CHANGED
+FLYING_MISSION; item 4 5; loaded 3 | shows HOLD | EXTERNAL NONE, it taken over MODE_CHANGED
+# A mission that ends in a landing is complete on the ground.
+FLYING_MISSION | shows LAND | LANDING OURS
+    | is ON_GROUND | GROUNDED NONE | shows disarmed | =, it complete
+
+# ArduPilot climbs once it shows guided, and then waits for no mode any more.
+ardupilot: connected; arm; shows GUIDED; shows armed; shows HOLD
+    | up | TAKING_OFF OURS, sends GUIDED, up accepted
+    | shows GUIDED | =, sends TAKE_OFF; asks none | wait 6 | =
+""",
+    nobodys_answers,
+)  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("result", "how"), [(REFUSED, "aborted VEHICLE_REFUSED"), (SILENT, "timed out NO_ANSWER")]
-)
-@pytest.mark.parametrize("state", LEADS_TO)
-def test_a_refusal_or_no_answer_ends_the_request(
-    state: State, result: int | None, how: str
-) -> None:
-    script, request_id = asked(state)
-    if state in (State.TAKING_OFF, State.FLYING_MISSION):
-        remember(script, mode=FlightMode.HOLD)
-    told = CommandEnded(request_id, COMMAND[state], result)
-    assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(*LEADS_TO[state], how)
-
-
-@pytest.mark.parametrize(
-    ("state", "shown"),
-    [
-        (State.RETURNING, FlightMode.RETURN),
-        (State.RETURNING, FlightMode.LAND),
-        (State.LANDING, FlightMode.LAND),
-        (State.TAKING_OFF, FlightMode.TAKEOFF),
-        (State.FLYING_MISSION, FlightMode.MISSION),
-    ],
-)
-@pytest.mark.parametrize(
-    ("result", "after", "how"),
-    [
-        (SILENT, None, ""),
-        (REFUSED, HELD, "aborted VEHICLE_REFUSED"),
-    ],
-)
-def test_a_lost_answer_is_nothing_where_the_vehicle_shows_that_it_does_it(
-    state: State,
-    shown: FlightMode,
-    result: int | None,
-    after: tuple[State, Control, list[CommandKind]] | None,
-    how: str,
-) -> None:
-    script, request_id = asked(state)
-    script.heartbeat(shown)
-    came = state_of(script)
-    told = CommandEnded(request_id, COMMAND[state], result)
-    wanted = Reaction(*(after or (came, script.gate.control, [])), how)
-    assert reaction(script, request_id, lambda s: s.feed(told)) == wanted
-
-
-@pytest.mark.parametrize(
-    ("result", "sent", "how"),
-    [
-        (REFUSED, [], "aborted VEHICLE_REFUSED"),
-        (SILENT, [CommandKind.HOLD, CommandKind.DISARM], "timed out NO_ANSWER"),
-    ],
-)
-@pytest.mark.parametrize("kind", [CommandKind.TAKE_OFF, CommandKind.START_MISSION])
-def test_what_did_not_leave_the_ground_stays_there(
-    kind: CommandKind, result: int | None, sent: list[CommandKind], how: str
-) -> None:
-    """A command that may come late yet finds a vehicle that is disarmed."""
-    script = Script(policy("default"))
-    if kind is CommandKind.TAKE_OFF:
-        request_id = take_off(script)
-        remember(script, mode=FlightMode.HOLD)
-    else:
-        lead_to(State.GROUNDED, script)
-        script.feed(MissionLoaded("square", 4))
-        request_id = script.ask(StartMission())
-    told = CommandEnded(request_id, kind, result)
-    assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-        State.GROUNDED, Control.NONE, sent, how
-    )
-
-
-@pytest.mark.parametrize(
-    ("result", "how"), [(REFUSED, "aborted VEHICLE_REFUSED"), (SILENT, "timed out NO_ANSWER")]
-)
-@pytest.mark.parametrize("state", [State.TAKING_PICTURE, State.FLYING_MISSION, State.TAKING_OFF])
-def test_with_a_position_too_old_the_stream_ends_and_the_vehicle_is_held(
-    state: State, result: int | None, how: str
-) -> None:
-    script, request_id = asked(state)
-    script.reports_position = False
-    script.wait(1.2)
-    assert state_of(script) is State.STALE
-    told = CommandEnded(request_id, COMMAND[state], result)
-    assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-        State.STALE, Control.OURS, [CommandKind.HOLD], how
-    )
-    assert not streams(script)
-    script.reports_position = True
-    script.tick()
-    assert state_of(script) is State.HOLDING
-
-
-@pytest.mark.parametrize(
-    ("result", "how"), [(REFUSED, "aborted VEHICLE_REFUSED"), (SILENT, "timed out NO_ANSWER")]
-)
-def test_an_arming_that_fails_while_the_position_is_too_old_just_ends(
-    result: int | None, how: str
-) -> None:
-    script, request_id = asked(State.GROUNDED)
-    script.reports_position = False
-    script.wait(1.2)
-    told = CommandEnded(request_id, CommandKind.ARM, result)
-    assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-        State.STALE, Control.NONE, [], how
-    )
-
-
-@pytest.mark.parametrize("state", [*COMMAND, State.MOVING, State.STALE, State.NO_VEHICLE])
-def test_an_answer_that_nobody_waits_for_is_told_and_not_acted_on(state: State) -> None:
-    script, _ = flight(state)
-    before = script.gate.memory
-    for result in (0, REFUSED, SILENT):
-        effects = script.feed(CommandEnded(-1, CommandKind.LAND, result))
-        assert all(isinstance(effect, Say) for effect in effects)
-    assert script.gate.memory == before
-
-
-class TestHold:
-    @pytest.mark.parametrize("state", [State.HOLDING, State.STALE, State.NO_VEHICLE])
-    def test_no_answer_is_asked_again_at_the_next_second(self, state: State) -> None:
-        script, _ = flight(state)
-        hold = script.ask(Abort()) if state is not State.HOLDING else script._next_id
-        after = state_of(script)
-        told = CommandEnded(hold, CommandKind.HOLD, SILENT)
-        assert reaction(script, hold, lambda s: s.feed(told)).ended == ""
-        assert reaction(script, hold, lambda s: s.wait(1.1)).sent == [CommandKind.HOLD]
-        assert state_of(script) is after
-
-    def test_a_refusal_of_the_gates_own_hold_ends_no_request_and_it_is_asked_again(self) -> None:
-        script, request_id = flight(State.TAKING_OFF)
-        script.feed(CommandEnded(request_id, CommandKind.TAKE_OFF, REFUSED))
-        assert state_of(script) is State.HOLDING
-        for _ in range(3):
-            script.forget()
-            script.feed(CommandEnded(0, CommandKind.HOLD, REFUSED))
-            script.wait(1.1)
-            assert script.commands() == [CommandKind.HOLD]
-        assert state_of(script) is State.HOLDING
-
-    @pytest.mark.parametrize("wanted", [Hold(), Abort()])
-    def test_a_refused_hold_ends_the_request_for_it(self, wanted: Hold | Abort) -> None:
-        script, _ = flight(State.MOVING)
-        request_id = script.ask(wanted)
-        script.feed(CommandEnded(request_id, CommandKind.HOLD, REFUSED))
-        assert script.outcome(request_id).code == "VEHICLE_REFUSED"
-        assert state_of(script) is State.HOLDING
-
-
-class TestDisarm:
-    def standing(self) -> tuple[Script, int]:
-        script = Script(policy("default"))
-        lead_to(State.GROUNDED, script)
-        return script, script.ask(Disarm())
-
-    def test_refused_on_the_ground_it_just_ends(self) -> None:
-        script, request_id = self.standing()
-        told = CommandEnded(request_id, CommandKind.DISARM, REFUSED)
-        assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-            State.GROUNDED, Control.NONE, [], "aborted VEHICLE_REFUSED"
-        )
-
-    def test_refused_where_a_take_off_may_come_yet_it_is_held(self) -> None:
-        script = Script(policy("default"))
-        take_off(script)
-        request_id = script.ask(Disarm())
-        assert state_of(script) is State.GROUNDED
-        told = CommandEnded(request_id, CommandKind.DISARM, REFUSED)
-        assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-            State.GROUNDED, Control.NONE, [CommandKind.HOLD], "aborted VEHICLE_REFUSED"
-        )
-        assert reaction(script, request_id, lambda s: s.wait(1.1)).sent == [CommandKind.HOLD]
-
-    def test_refused_where_it_is_not_known_to_stand_it_is_held(self) -> None:
-        script = Script(policy("default"))
-        lead_to(State.GROUNDED, script)
-        script.reports_landed = False
-        script.wait(4.0)
-        request_id = script.ask(Disarm())
-        told = CommandEnded(request_id, CommandKind.DISARM, REFUSED)
-        assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-            *HELD, "aborted VEHICLE_REFUSED"
-        )
-
-    def test_refused_while_the_position_is_too_old_it_just_ends(self) -> None:
-        script, request_id = self.standing()
-        script.reports_position = False
-        script.wait(1.2)
-        assert state_of(script) is State.STALE
-        told = CommandEnded(request_id, CommandKind.DISARM, REFUSED)
-        assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-            State.STALE, Control.NONE, [], "aborted VEHICLE_REFUSED"
-        )
-
-    def test_or_is_held_where_a_take_off_may_come_yet(self) -> None:
-        script = Script(policy("default"))
-        take_off(script)
-        script.reports_position = False
-        script.wait(1.2)
-        request_id = script.ask(Disarm())
-        told = CommandEnded(request_id, CommandKind.DISARM, REFUSED)
-        assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-            State.STALE, Control.NONE, [CommandKind.HOLD], "aborted VEHICLE_REFUSED"
-        )
-
-    def test_not_answered_it_is_timed_out(self) -> None:
-        script, request_id = self.standing()
-        told = CommandEnded(request_id, CommandKind.DISARM, SILENT)
-        assert reaction(script, request_id, lambda s: s.feed(told)) == Reaction(
-            State.GROUNDED, Control.NONE, [], "timed out NO_ANSWER"
-        )
-
-
-class TestPictures:
-    @pytest.mark.parametrize(
-        "state",
-        [s for s in (*COMMAND, State.MOVING, State.STALE) if s is not State.TAKING_PICTURE],
-    )
-    @pytest.mark.parametrize("ok", [True, False])
-    def test_one_that_nobody_asked_for_changes_nothing(self, state: State, ok: bool) -> None:
-        script, request_id = flight(state)
-        control = script.gate.control
-        assert reaction(script, request_id, lambda s: s.feed(PhotoSeen(4, ok))) == Reaction(
-            state, control, [], ""
-        )
-
-    @pytest.mark.parametrize(
-        ("ok", "how"), [(True, "complete"), (False, "aborted VEHICLE_REFUSED")]
-    )
-    def test_ours_ends_the_request(self, ok: bool, how: str) -> None:
-        script, request_id = flight(State.TAKING_PICTURE)
-        assert reaction(script, request_id, lambda s: s.feed(PhotoSeen(4, ok))) == Reaction(
-            State.HOVERING, Control.OURS, [], how
-        )
-
-
-def ends_with(seen: MissionSeen | None) -> Callable[[Script], None]:
-    """A mission ends: it is reported, or (None) shown by the hold mode."""
-
-    def happens(script: Script) -> None:
-        if seen is None:
-            script.heartbeat(FlightMode.HOLD)
-        else:
-            script.feed(seen)
-
-    return happens
-
-
-class TestMissions:
-    @pytest.mark.parametrize("finished", [True, False])
-    @pytest.mark.parametrize(
-        "state",
-        [s for s in (*COMMAND, State.MOVING, State.STALE) if s is not State.FLYING_MISSION],
-    )
-    def test_items_of_a_mission_that_does_not_fly_change_nothing(
-        self, state: State, finished: bool
-    ) -> None:
-        script, request_id = flight(state)
-        control = script.gate.control
-        seen = MissionSeen(3, 4, finished)
-        assert reaction(script, request_id, lambda s: s.feed(seen)) == Reaction(
-            state, control, [], ""
-        )
-
-    def test_an_item_changes_nothing(self) -> None:
-        script, request_id = flight(State.FLYING_MISSION)
-        seen = MissionSeen(3, 5, finished=False)
-        assert reaction(script, request_id, lambda s: s.feed(seen)) == Reaction(
-            State.FLYING_MISSION, Control.OURS, [], ""
-        )
-
-    def test_after_the_last_control_is_taken_at_the_place(self) -> None:
-        script, request_id = flight(State.FLYING_MISSION)
-        seen = MissionSeen(4, 5, finished=True)
-        assert reaction(script, request_id, lambda s: s.feed(seen)) == Reaction(
-            State.HOVERING, Control.TAKING, [], ""
-        )
-        assert streams(script)
-
-    def test_where_the_place_does_not_clear_it_is_complete_and_held(self) -> None:
-        """Inside the fence, and higher than the policy lets a vehicle hover."""
-        for end in (MissionSeen(4, 5, finished=True), None):
-            script, request_id = flight(State.FLYING_MISSION, max_up_m=10.0)
-            script.feed(MissionSeen(4, 5, finished=False))
-            script.at(0.0, 0.0, 12.0)
-            assert state_of(script) is State.FLYING_MISSION
-            assert reaction(script, request_id, ends_with(end)) == Reaction(*HELD, "complete")
-
-    def test_on_the_ground_the_landing_completes_it(self) -> None:
-        script = Script(policy("default"))
-        lead_to(State.GROUNDED, script)
-        script.feed(MissionLoaded("square", 4))
-        request_id = script.ask(StartMission())
-        script.heartbeat(FlightMode.MISSION)
-        seen = MissionSeen(3, 4, finished=True)
-        assert reaction(script, request_id, lambda s: s.feed(seen)) == Reaction(
-            State.FLYING_MISSION, Control.OURS, [], ""
-        )
-
-    def test_px4_shows_its_end_by_the_hold_mode(self) -> None:
-        script, request_id = flight(State.FLYING_MISSION)
-        script.feed(MissionSeen(4, 5, finished=False))
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.HOLD)) == Reaction(
-            State.HOVERING, Control.TAKING, [], ""
-        )
-
-    def test_not_known_to_fly_it_is_complete_and_held(self) -> None:
-        for end in (MissionSeen(4, 5, finished=True), None):
-            script, request_id = flight(State.FLYING_MISSION)
-            script.feed(MissionSeen(4, 5, finished=False))
-            script.reports_landed = False
-            script.wait(4.0)
-            assert reaction(script, request_id, ends_with(end)) == Reaction(*HELD, "complete")
-
-
-class TestCommandsThatWaitForAMode:
-    def test_ardupilot_climbs_once_it_shows_guided(self) -> None:
-        script = Script(policy("default"), "ardupilot").connect()
-        script.ask(Arm())
-        script.heartbeat(FlightMode.GUIDED)
-        script.heartbeat(armed=True)
-        script.heartbeat(FlightMode.HOLD)
-        request_id = script.ask(TakeOff(UP))
-        assert script.commands()[-1] is CommandKind.GUIDED
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.GUIDED)) == Reaction(
-            State.TAKING_OFF, Control.OURS, [CommandKind.TAKE_OFF], ""
-        )
-        assert script.gate.memory.asked_mode is None
-        assert reaction(script, request_id, lambda s: s.wait(6.0)) == Reaction(
-            State.TAKING_OFF, Control.OURS, [], ""
-        )
-
-    def test_ardupilot_arms_once_it_shows_guided(self) -> None:
-        script = Script(policy("default"), "ardupilot").connect()
-        request_id = script.ask(Arm())
-        found = reaction(script, request_id, lambda s: s.heartbeat(FlightMode.GUIDED))
-        assert found.sent == [CommandKind.ARM]
-        assert script.gate.memory.asked_mode is None
-
-    def test_a_mode_for_arming_that_never_comes_is_not_waited_for_longer(self) -> None:
-        script = Script(policy("default"), "ardupilot").connect()
-        request_id = script.ask(Arm())
-        assert reaction(script, request_id, lambda s: s.wait(5.1)) == Reaction(
-            State.GROUNDED, Control.NONE, [], "timed out NO_ANSWER"
-        )
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.GUIDED)).sent == []
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_what_an_answer_does(row: Row) -> None:
+    row.fly()

@@ -4,539 +4,165 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.gate.effects import CancelCommand, CommandKind
-from gcs.gate.inputs import (
-    HomeSeen,
-    Input,
-    LandedSeen,
-    MessageSeen,
-    MissionLoaded,
-    OperatorLost,
-    VerifierChanged,
-)
-from gcs.gate.machine.memory import GATE
-from gcs.gate.refusal import Code
-from gcs.gate.requests import (
-    Abort,
-    Hold,
-    Land,
-    Request,
-    Resume,
-    SetMode,
-    StartMission,
-    TakeControl,
-)
-from gcs.gate.states import Control, FlightMode, LandedState, State
-from tests.unit.gate.reactions import (
-    HEARD,
-    HELD,
-    VERIFIED,
-    Reaction,
-    elsewhere,
-    ended,
-    flight,
-    reaction,
-    remember,
-    sample,
-    stale,
-    state_of,
-    streams,
-)
-from tests.unit.gate.script import Script, policy
-from tests.unit.gate.situations import UP
+from gcs.gate.inputs import LandedSeen
+from gcs.gate.states import LandedState
+from tests.unit.gate.rows import Flight, Row, rows
 
 
-class TestContact:
-    @pytest.mark.parametrize("state", HEARD)
-    def test_a_vehicle_that_is_not_heard_any_more_is_nobodys(self, state: State) -> None:
-        script, request_id = flight(state)
-        script.heartbeat()
-        script.reports_heartbeat = False
-        script.wait(3.4)
-        assert (state_of(script), ended(script, request_id)) == (state, "")
-        script.wait(0.2)
-        assert (state_of(script), script.gate.control) == (State.NO_VEHICLE, Control.NONE)
-        assert ended(script, request_id) == "aborted LINK_LOST"
-        memory = script.gate.memory
-        assert (memory.armed, memory.mode, memory.landed) == (False, None, LandedState.UNDEFINED)
-        held = [(GATE, CommandKind.HOLD)] if state is State.HOLDING else []
-        assert list(memory.outstanding) == held
-        assert not streams(script)
-
-    def test_a_hold_that_was_asked_for_is_asked_for_until_it_is_shown(self) -> None:
-        script, request_id = flight(State.HOLDING)
-        script.reports_heartbeat = script.reports_position = False
-        script.wait(4.0)
-        assert (state_of(script), ended(script, request_id)) == (
-            State.NO_VEHICLE,
-            "aborted LINK_LOST",
-        )
-        script.forget()
-        script.wait(5.0)
-        assert script.commands() == [CommandKind.HOLD] * 5
-        script.reports_heartbeat = script.reports_position = True
-        script.heartbeat(FlightMode.GUIDED)
-        script.land_state(LandedState.IN_AIR)
-        script.tick()
-        assert state_of(script) is State.HOLDING
-        script.heartbeat(FlightMode.HOLD)
-        script.forget()
-        script.wait(3.0)
-        assert script.commands() == []
-
-    @pytest.mark.parametrize("given", [MessageSeen(), LandedSeen(LandedState.IN_AIR)])
-    def test_any_message_is_a_sign_of_life(self, given: Input) -> None:
-        """autopilots.md 7: without its heartbeats a vehicle was lost that told all else."""
-        script, request_id = flight(State.MOVING)
-        script.reports_heartbeat = False
-        for _ in range(5):
-            script.wait(1.0)
-            script.feed(MessageSeen())
-        script.feed(given)
-        assert (state_of(script), ended(script, request_id)) == (State.MOVING, "")
-
-    def test_a_message_of_a_vehicle_that_was_lost_tells_no_mode(self) -> None:
-        script = Script(policy("default"))
-        script.feed(MessageSeen())
-        assert state_of(script) is State.NO_VEHICLE
-        script, _ = flight(State.NO_VEHICLE)
-        script.feed(MessageSeen())
-        assert state_of(script) is State.NO_VEHICLE
-
-    @pytest.mark.parametrize(
-        ("asked", "kind"),
-        [
-            (Hold(), CommandKind.HOLD),
-            (Abort(), CommandKind.HOLD),
-            (Land(), CommandKind.LAND),
-            (SetMode("AUTO.LOITER", FlightMode.HOLD), CommandKind.HOLD),
-        ],
-    )
-    def test_a_stop_goes_out_to_a_vehicle_that_was_heard_once(
-        self, asked: Request, kind: CommandKind
-    ) -> None:
-        script = Script(policy("default")).take_control(UP)
-        script.reports_heartbeat = script.reports_position = False
-        script.wait(4.0)
-        script.forget()
-        request_id = script.ask(asked)
-        assert (script.commands(), ended(script, request_id)) == ([kind], "")
-        fresh = Script(policy("default"))
-        assert fresh.refusal(fresh.ask(asked)) is Code.NO_VEHICLE
-
-    @pytest.mark.parametrize("result", [None, 2])
-    def test_a_landing_that_is_not_heard_of_is_told(self, result: int | None) -> None:
-        script = Script(policy("default")).take_control(UP)
-        script.reports_heartbeat = script.reports_position = False
-        script.wait(4.0)
-        request_id = script.ask(Land())
-        script.answer(CommandKind.LAND, result)
-        wanted = "timed out NO_ANSWER" if result is None else "aborted VEHICLE_REFUSED"
-        assert ended(script, request_id) == wanted
-
-    def test_a_landing_that_was_not_heard_of_is_complete_where_it_is_seen(self) -> None:
-        script = Script(policy("default")).take_control(UP)
-        script.reports_heartbeat = script.reports_position = False
-        script.wait(4.0)
-        request_id = script.ask(Land())
-        script.answer(CommandKind.LAND, 0)
-        script.reports_heartbeat = script.reports_position = True
-        script.heartbeat(FlightMode.LAND)
-        script.land_state(LandedState.IN_AIR)
-        script.wait(10.0)
-        assert (state_of(script), ended(script, request_id)) == (State.LANDING, "")
-        script.land_state(LandedState.ON_GROUND)
-        script.heartbeat(armed=False)
-        assert ended(script, request_id) == "complete"
-
-    @pytest.mark.parametrize(
-        ("state", "sent"),
-        [
-            (State.MOVING, [CommandKind.HOLD]),
-            (State.FLYING_MISSION, [CommandKind.HOLD]),
-            (State.RETURNING, []),
-            (State.LANDING, []),
-            (State.EXTERNAL, []),
-            (State.GROUNDED, []),
-        ],
-    )
-    def test_who_quits_holds_what_we_flew_when_it_was_heard_last(
-        self, state: State, sent: list[CommandKind]
-    ) -> None:
-        script, _ = flight(state)
-        script.heartbeat()
-        script.reports_heartbeat = False
-        script.wait(4.0)
-        assert state_of(script) is State.NO_VEHICLE
-        script.forget()
-        script.feed(OperatorLost("quit"))
-        assert (script.commands(), script.gate.settled) == (sent, sent == [])
-
-    def test_who_quits_asks_nothing_of_nobody(self) -> None:
-        script = Script(policy("default"))
-        script.feed(OperatorLost("quit"))
-        assert (script.commands(), script.gate.settled) == ([], True)
-
-    def test_who_quits_does_not_take_back_the_landing_of_what_is_not_heard(self) -> None:
-        script = Script(policy("default")).take_control(UP)
-        script.reports_heartbeat = script.reports_position = False
-        script.wait(4.0)
-        request_id = script.ask(Land())
-        script.forget()
-        script.feed(OperatorLost("quit"))
-        assert script.commands() == []
-        assert ended(script, request_id) == "aborted OPERATOR_LOST"
-        assert script.all(CancelCommand) == []
-        assert not script.gate.settled
-
-    def test_nor_of_one_that_is_back_and_does_not_show_it_yet(self) -> None:
-        script = Script(policy("default")).take_control(UP)
-        script.reports_heartbeat = script.reports_position = False
-        script.wait(4.0)
-        request_id = script.ask(Land())
-        script.heartbeat(FlightMode.HOLD)
-        script.position()
-        assert (state_of(script), ended(script, request_id)) == (State.EXTERNAL, "")
-        script.forget()
-        script.feed(OperatorLost("quit"))
-        assert ended(script, request_id) == "aborted OPERATOR_LOST"
-        assert script.commands() == []
-        assert script.all(CancelCommand) == []
-        assert script.gate.settled
-
-    def test_so_it_is_where_the_position_went_first(self) -> None:
-        script, request_id = flight(State.MOVING)
-        script.reports_heartbeat = script.reports_position = False
-        assert reaction(script, request_id, lambda s: s.wait(4.0)) == Reaction(
-            State.NO_VEHICLE, Control.NONE, [CommandKind.HOLD] * 2, "aborted STALE"
-        )
-
-    def test_somebody_who_is_heard_first_is_stale_until_a_position_comes(self) -> None:
-        script = Script(policy("default"))
-        script.heartbeat()
-        assert state_of(script) is State.STALE
-        script.tick()
-        assert state_of(script) is State.GROUNDED
-
-    @pytest.mark.parametrize(
-        ("mode", "after"),
-        [
-            (FlightMode.RETURN, State.RETURNING),
-            (FlightMode.LAND, State.LANDING),
-            (FlightMode.HOLD, State.EXTERNAL),
-            (FlightMode.GUIDED, State.EXTERNAL),
-        ],
-    )
-    def test_what_flies_when_it_is_first_heard_is_where_its_mode_says(
-        self, mode: FlightMode, after: State
-    ) -> None:
-        script = Script(policy("default"))
-        script.heartbeat(mode, armed=True)
-        script.land_state(LandedState.IN_AIR)
-        script.position()
-        assert (state_of(script), script.gate.control) == (after, Control.NONE)
-
-    def test_armed_and_not_known_to_stand_is_somebody_elses(self) -> None:
-        script = Script(policy("default"))
-        script.heartbeat(FlightMode.HOLD, armed=True)
-        script.position()
-        assert state_of(script) is State.EXTERNAL
-
-    def test_a_hold_that_was_commanded_to_nobody_is_commanded_to_whoever_is_heard(self) -> None:
-        script, abort = flight(State.NO_VEHICLE)
-        script.heartbeat(FlightMode.GUIDED)
-        script.land_state(LandedState.IN_AIR)
-        found = reaction(script, abort, lambda s: s.position())
-        assert found[:3] == HELD
-        assert not streams(script)
-
-    def test_disarmed_and_not_known_to_fly_stands(self) -> None:
-        script = Script(policy("default"))
-        script.heartbeat(FlightMode.LAND, armed=False)
-        script.position()
-        assert state_of(script) is State.GROUNDED
-
-    def test_disarmed_is_believed_before_the_landed_state(self) -> None:
-        script = Script(policy("default"))
-        script.heartbeat(FlightMode.LAND, armed=False)
-        script.land_state(LandedState.IN_AIR)
-        script.position()
-        assert state_of(script) is State.GROUNDED
+def reported_in_air(flight: Flight) -> None:
+    """Without the script's own reports of it."""
+    flight.script.feed(LandedSeen(LandedState.IN_AIR))
 
 
-class TestOldPosition:
-    @pytest.mark.parametrize("state", [*VERIFIED, State.HOLDING])
-    def test_what_is_streamed_goes_on_for_the_grace_and_then_it_is_held(self, state: State) -> None:
-        script, request_id = flight(state)
-        streamed = streams(script)
-        script.reports_position = False
-        script.forget()
-        script.wait(1.0)
-        assert state_of(script) is state
-        script.wait(0.1)
-        assert state_of(script) is State.STALE
-        assert streams(script) is streamed
-        sent_before = script.commands().count(CommandKind.HOLD)
-        script.forget()
-        script.wait(0.4)
-        # A hold that was asked for goes on until it is seen.
-        assert ended(script, request_id) == ("" if state is State.HOLDING else "aborted STALE")
-        assert state is State.HOLDING or CommandKind.HOLD in script.commands()
-        assert sent_before == 0 or state is State.HOLDING
-        assert not streams(script)
-        assert (state_of(script), script.gate.control) == (State.STALE, Control.OURS)
-
-    @pytest.mark.parametrize("state", [*VERIFIED, State.HOLDING])
-    def test_a_position_within_the_grace_goes_on_where_it_was(self, state: State) -> None:
-        script, request_id = stale(state)
-        control = script.gate.control
-        script.reports_position = True
-        assert reaction(script, request_id, lambda s: s.position()) == Reaction(
-            state, control, [], ""
-        )
-
-    @pytest.mark.parametrize("state", VERIFIED)
-    def test_a_position_after_the_grace_finds_it_held(self, state: State) -> None:
-        script, request_id = stale(state)
-        script.wait(0.5)
-        assert reaction(script, request_id, lambda s: s.position())[:2] == (
-            State.HOLDING,
-            Control.OURS,
-        )
-
-    @pytest.mark.parametrize("state", [State.RETURNING, State.LANDING])
-    def test_a_return_and_a_landing_are_the_vehicles_own_business(self, state: State) -> None:
-        script, request_id = flight(state)
-        script.reports_position = False
-        assert reaction(script, request_id, lambda s: s.wait(3.0)) == Reaction(
-            state, Control.OURS, [], ""
-        )
-
-    @pytest.mark.parametrize("state", [State.GROUNDED, State.EXTERNAL])
-    def test_what_we_do_not_fly_is_stale_and_comes_back_and_nothing_is_sent(
-        self, state: State
-    ) -> None:
-        script, request_id = stale(state)
-        assert reaction(script, request_id, lambda s: s.wait(1.0)) == Reaction(
-            State.STALE, Control.NONE, [], ""
-        )
-        assert reaction(script, request_id, lambda s: s.position()) == Reaction(
-            state, Control.NONE, [], ""
-        )
+def knows_nothing(flight: Flight) -> None:
+    memory = flight.script.gate.memory
+    assert (memory.armed, memory.mode, memory.landed) == (False, None, LandedState.UNDEFINED)
 
 
-class TestWhileThePositionIsTooOld:
-    FLOWN = (State.MOVING, State.TAKING_PICTURE, State.FLYING_MISSION)
+ROWS = rows(
+    """
+# A vehicle that is not heard any more is nobody's.
+HOVERING; wait 1.1; shows; no heartbeats
+    | wait 3.4 | = | wait 0.2; knows-nothing
+    | NO_VEHICLE NONE, it aborted LINK_LOST; awaits none; silent
+{HEARD -HOLDING, -HOVERING}; shows; no heartbeats
+    | wait 3.4 | = | wait 0.2; knows-nothing
+    | NO_VEHICLE NONE, it aborted LINK_LOST; awaits none; silent
+# A hold that was asked for is asked for until it is shown.
+HOLDING; shows; no heartbeats
+    | wait 3.4 | =, sends HOLD HOLD HOLD
+    | wait 0.2; knows-nothing
+    | NO_VEHICLE NONE, sends HOLD, it aborted LINK_LOST; awaits HOLD; silent
+HOLDING | unheard for 4 | NO_VEHICLE NONE, sends HOLD HOLD HOLD HOLD, it aborted LINK_LOST
+    | wait 5 | =, sends HOLD HOLD HOLD HOLD HOLD
+    | heartbeats; positions; shows GUIDED; is IN_AIR; tick | HOLDING OURS, sends HOLD
+    | shows HOLD; wait 3 | =
+# Any message is a sign of life (autopilots.md 7: without its heartbeats a vehicle was lost that
+# ... told
+# ... all else), but tells no mode of a vehicle that was lost.
+MOVING; no heartbeats
+    | wait 1; message; wait 1; message; wait 1; message; wait 1; message; wait 1 | =
+    | {message, reported-in-air} | =
+{unheard, NO_VEHICLE} | message | NO_VEHICLE NONE
+# A stop goes out to a vehicle that was heard once.
+ours; unheard for 4 | {hold, abort, mode AUTO.LOITER HOLD} | NO_VEHICLE NONE, sends HOLD, $ accepted
+ours; unheard for 4 | land | NO_VEHICLE NONE, sends LAND, land accepted
+unheard | {hold, abort, land, mode AUTO.LOITER HOLD} | =, $ refused NO_VEHICLE
+# A landing that is not heard of is told, and is complete where it is seen.
+ours; unheard for 4; land
+    | <ignores, refuses> LAND | =, land <timed out NO_ANSWER, aborted VEHICLE_REFUSED>
+ours; unheard for 4; land; accepts LAND; heartbeats; positions; shows LAND; is IN_AIR
+    | wait 10 | LANDING NONE | is ON_GROUND; shows disarmed | GROUNDED NONE, land complete
+# Who quits holds what we flew when it was heard last, and asks nothing of nobody.
+{MOVING, FLYING_MISSION}; shows; no heartbeats; wait 4 | quits | =, sends HOLD; unsettled
+{RETURNING, LANDING, EXTERNAL, GROUNDED}; shows; no heartbeats; wait 4 | quits | =; settled
+unheard | quits | =; settled
+# Who quits does not take back the landing of what is not heard, or does not show it yet.
+ours; unheard for 4; land | quits | =, land aborted OPERATOR_LOST; cancels none; unsettled
+ours; unheard for 4; land; shows HOLD; position
+    | nothing | EXTERNAL NONE | quits | =, land aborted OPERATOR_LOST; cancels none; settled
+# So it is where the position went first.
+MOVING | unheard for 4 | NO_VEHICLE NONE, sends HOLD HOLD, it aborted STALE
+# No heartbeat is no vehicle, and one that returns is somebody else's.
+in MOVING; unheard for 5; shows GUIDED; is IN_AIR | position | EXTERNAL NONE
+# Abort is sent to a vehicle that is not heard any more, until its time is over.
+in MOVING; unheard for 5
+    | abort | NO_VEHICLE NONE, sends HOLD, abort accepted
+    | wait 6 | =, sends HOLD HOLD HOLD HOLD HOLD HOLD, abort timed out NO_ANSWER
+# Somebody who is heard first is stale until a position comes.
+unheard | shows | STALE NONE | tick | GROUNDED NONE
+# What flies when it is first heard is where its mode says; armed and not known to stand, it flies.
+unheard; shows <RETURN, LAND, HOLD, GUIDED> armed; is IN_AIR
+    | position | <RETURNING, LANDING, EXTERNAL, EXTERNAL> NONE
+unheard; shows HOLD armed | position | EXTERNAL NONE
+# Disarmed and not known to fly it stands; disarmed is believed before the landed state.
+unheard; shows LAND disarmed | position | GROUNDED NONE
+unheard; shows LAND disarmed; is IN_AIR | position | GROUNDED NONE
+# A hold that was commanded to nobody is commanded to whoever is heard.
+NO_VEHICLE; shows GUIDED; is IN_AIR | position | HOLDING OURS, sends HOLD; silent
+# The first position of a return is no jump.
+rtl_blocked=forward: unheard; shows armed; is IN_AIR; land; return | position | RETURNING OURS
 
-    @pytest.mark.parametrize("mode", [FlightMode.OTHER, FlightMode.TAKEOFF, FlightMode.HOLD])
-    @pytest.mark.parametrize("state", FLOWN)
-    def test_a_pilot_takes_over(self, state: State, mode: FlightMode) -> None:
-        script, request_id = stale(state)
-        assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-            State.STALE, Control.NONE, [], "taken over MODE_CHANGED"
-        )
-        assert not streams(script)
-        assert reaction(script, request_id, lambda s: s.wait(1.0)).sent == []
-        script.reports_position = True
-        script.tick()
-        assert state_of(script) is State.EXTERNAL
+# Old position: what is streamed goes on for the grace, then it is held in silence.
+{MOVING, TAKING_PICTURE}; tick; no positions
+    | wait 1 | = | wait 0.1 | STALE OURS; streams | wait 0.4
+    | =, sends HOLD, it aborted STALE; silent
+{TAKING_OFF, FLYING_MISSION}; tick; no positions
+    | wait 1 | = | wait 0.1 | STALE OURS; silent | wait 0.4
+    | =, sends HOLD, it aborted STALE; silent
+HOVERING; tick; no positions
+    | wait 1 | =, sends GUIDED | wait 0.1 | STALE TAKING; streams
+    | wait 0.4 | STALE OURS, sends HOLD, it aborted STALE; silent
+# A hold that was asked for goes on until it is seen.
+HOLDING; tick; no positions
+    | wait 1 | =, sends HOLD | wait 0.1 | STALE OURS; streams | wait 0.4 | =; silent
+# The stream ends at the nearest tick to the end of the grace.
+MOVING; no positions | wait 1.45 | STALE OURS; setpoints 3 0 1.5
+    | wait 0.1 | =, sends HOLD, it aborted STALE; setpoints 3 0 1.5 | wait 0.05 | =; setpoints none
+# A position within the grace goes on where it was, one after it finds the vehicle held.
+stale <TAKING_OFF, MOVING, TAKING_PICTURE, FLYING_MISSION, HOLDING>
+    | position | <TAKING_OFF, MOVING, TAKING_PICTURE, FLYING_MISSION, HOLDING> OURS
+stale HOVERING | position | HOVERING TAKING
+stale {VERIFIED}; wait 0.5 | position | HOLDING OURS
+# A return and a landing are the vehicle's own business.
+{RETURNING, LANDING}; no positions | wait 3 | =
+# What we do not fly is stale and comes back, and nothing is sent.
+stale <GROUNDED, EXTERNAL> | wait 1 | STALE NONE | position | <GROUNDED, EXTERNAL> NONE
 
-    @pytest.mark.parametrize(
-        ("mode", "after"),
-        [(FlightMode.RETURN, State.RETURNING), (FlightMode.LAND, State.LANDING)],
-    )
-    @pytest.mark.parametrize("state", FLOWN)
-    def test_a_failsafe_of_the_vehicles_own_is_seen(
-        self, state: State, mode: FlightMode, after: State
-    ) -> None:
-        script, request_id = stale(state)
-        assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-            after, Control.NONE, [], "taken over MODE_CHANGED"
-        )
-
-    @pytest.mark.parametrize("mode", [FlightMode.RETURN, FlightMode.LAND])
-    def test_on_the_ground_it_is_a_mode_and_nothing_more(self, mode: FlightMode) -> None:
-        script, request_id = stale(State.GROUNDED)
-        assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-            State.STALE, Control.NONE, [], ""
-        )
-
-    @pytest.mark.parametrize("mode", [m for m in FlightMode if m is not FlightMode.HOLD])
-    def test_a_hold_that_is_not_shown_yet_is_waited_for(self, mode: FlightMode) -> None:
-        script, request_id = stale(State.MOVING)
-        script.ask(Hold())
-        script.heartbeat(FlightMode.OTHER if mode is FlightMode.GUIDED else FlightMode.GUIDED)
-        assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-            State.STALE, Control.OURS, [], ""
-        )
-
-    @pytest.mark.parametrize("wanted", [Hold(), Abort()])
-    def test_the_hold_that_is_shown_completes_the_request_for_it(
-        self, wanted: Hold | Abort
-    ) -> None:
-        script, _ = stale(State.MOVING)
-        asked = script.ask(wanted)
-        assert reaction(script, asked, lambda s: s.heartbeat(FlightMode.HOLD)) == Reaction(
-            State.STALE, Control.OURS, [], "complete"
-        )
-        assert reaction(script, asked, lambda s: s.wait(2.0)).sent == []
-
-    def test_the_gates_own_hold_that_is_shown_is_not_repeated(self) -> None:
-        script, request_id = stale(State.MOVING)
-        script.wait(0.5)
-        assert ended(script, request_id) == "aborted STALE"
-        script.heartbeat(FlightMode.HOLD)
-        assert reaction(script, request_id, lambda s: s.wait(2.0)).sent == []
-
-    def test_a_commanded_mode_that_is_not_shown_yet_is_waited_for(self) -> None:
-        script, _ = flight(State.TAKING_PICTURE)
-        script = Script(policy("default")).take_control(UP)
-        script.feed(MissionLoaded("square", 4))
-        mission = script.ask(StartMission())
-        script.reports_position = False
-        script.wait(1.1)
-        assert state_of(script) is State.STALE
-        for mode in (FlightMode.OTHER, FlightMode.RETURN, FlightMode.LAND, FlightMode.GUIDED):
-            assert reaction(script, mission, lambda s, m=mode: s.heartbeat(m)) == Reaction(  # type: ignore[misc]
-                State.STALE, Control.OURS, [], ""
-            )
-
-    @pytest.mark.parametrize("state", FLOWN)
-    def test_the_modes_it_was_flown_in_change_nothing(self, state: State) -> None:
-        script, request_id = stale(state)
-        assert reaction(script, request_id, lambda s: s.heartbeat()) == Reaction(
-            State.STALE, Control.OURS, [], ""
-        )
-        assert streams(script) is (state is not State.FLYING_MISSION)
-
-    def test_guided_shown_for_a_hover_whose_control_is_being_taken_changes_nothing(self) -> None:
-        script = Script(policy("default"))
-        script.mode = FlightMode.OTHER
-        script.fly(UP)
-        request_id = script.ask(TakeControl())
-        script.reports_position = False
-        script.wait(1.04)
-        script.wait(0.06)
-        assert state_of(script) is State.STALE
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.HOLD)) == Reaction(
-            State.STALE, Control.TAKING, [], ""
-        )
-
-    @pytest.mark.parametrize("state", FLOWN)
-    def test_a_disarmed_vehicle_is_nobodys(self, state: State) -> None:
-        script, request_id = stale(state)
-        assert reaction(script, request_id, lambda s: s.heartbeat(armed=False)) == Reaction(
-            State.STALE,
-            Control.NONE,
-            [],
-            "complete" if state is State.FLYING_MISSION else "taken over NOT_ARMED",
-        )
-        assert not streams(script)
-        assert reaction(script, request_id, lambda s: s.wait(1.0)).sent == []
-        script.reports_position = True
-        script.tick()
-        assert state_of(script) is State.GROUNDED
-
-    @pytest.mark.parametrize("state", FLOWN)
-    def test_one_that_stands_is_nobodys(self, state: State) -> None:
-        script, request_id = stale(state)
-        assert reaction(
-            script, request_id, lambda s: s.land_state(LandedState.ON_GROUND)
-        ) == Reaction(State.STALE, Control.NONE, [], "taken over NOT_FLYING")
-        assert not streams(script)
-        assert reaction(script, request_id, lambda s: s.wait(1.0)).sent == []
-
-    def test_the_ground_is_nothing_new_to_what_stood(self) -> None:
-        script, request_id = stale(State.GROUNDED)
-        script.land_state(LandedState.UNDEFINED)
-        assert reaction(
-            script, request_id, lambda s: s.land_state(LandedState.ON_GROUND)
-        ) == Reaction(State.STALE, Control.NONE, [], "")
-
-    def test_the_disarm_of_a_vehicle_that_somebody_else_flies_is_nothing_to_us(self) -> None:
-        script = Script(policy("default")).fly(UP)
-        script.reports_position = False
-        script.wait(1.1)
-        assert reaction(script, 0, lambda s: s.heartbeat(armed=False)) == Reaction(
-            State.STALE, Control.NONE, [], ""
-        )
-
-    def test_arming_is_complete_all_the_same(self) -> None:
-        script, request_id = stale(State.GROUNDED)
-        assert reaction(script, request_id, lambda s: s.heartbeat(armed=True)) == Reaction(
-            State.STALE, Control.NONE, [], "complete"
-        )
-
-    def test_being_armed_completes_no_other_request(self) -> None:
-        script, request_id = stale(State.MOVING)
-        script.armed = False
-        remember(script, armed=False)
-        assert reaction(script, request_id, lambda s: s.heartbeat(armed=True)) == Reaction(
-            State.STALE, Control.OURS, [], ""
-        )
-
-    @pytest.mark.parametrize(
-        ("happens", "code"),
-        [
-            (lambda s: s.feed(sample(s, 20.0, reset=True)), "ESTIMATOR_RESET"),
-            (lambda s: s.feed(HomeSeen((0.0, 5.0, 0.0))), "HOME_MOVED"),
-            (lambda s: s.feed(VerifierChanged(elsewhere(s))), None),
-        ],
-        ids=["jumped", "home moved", "fence moved"],
-    )
-    @pytest.mark.parametrize("state", FLOWN)
-    def test_what_is_verified_no_more_is_held_and_not_streamed(
-        self, state: State, happens: object, code: str | None
-    ) -> None:
-        script, request_id = stale(state)
-        assert callable(happens)
-        found = reaction(script, request_id, happens)
-        assert found[1:3] == (Control.OURS, [CommandKind.HOLD])
-        if code is not None:
-            assert found.ended == f"aborted {code}"
-        assert found.state in (State.STALE, State.HOLDING)
-        script.heartbeat(FlightMode.HOLD)
-        script.reports_position = True
-        script.tick()
-        assert state_of(script) is State.HOLDING
-
-    @pytest.mark.parametrize(
-        ("happens", "code"),
-        [
-            (lambda s: s.feed(HomeSeen((0.0, 5.0, 0.0))), Code.HOME_MOVED),
-            (lambda s: s.feed(VerifierChanged(elsewhere(s))), None),
-        ],
-        ids=["home moved", "fence moved"],
-    )
-    @pytest.mark.parametrize("state", FLOWN)
-    def test_the_stream_ends_with_the_reason(
-        self, state: State, happens: object, code: Code | None
-    ) -> None:
-        script, request_id = stale(state)
-        assert callable(happens)
-        happens(script)
-        assert not streams(script)
-        assert code in (None, script.outcome(request_id).code)
-        assert state_of(script) is State.STALE
+# While it is too old a pilot takes over.
+stale {MOVING, TAKING_PICTURE, FLYING_MISSION}
+    | shows {OTHER, TAKEOFF, HOLD} | STALE NONE, it taken over MODE_CHANGED; silent
+    | wait 1 | = | positions; tick | EXTERNAL NONE
+# A failsafe of the vehicle's own is seen; on the ground it is a mode and nothing more.
+stale {MOVING, TAKING_PICTURE, FLYING_MISSION}
+    | shows <RETURN, LAND> | <RETURNING, LANDING> NONE, it taken over MODE_CHANGED
+stale GROUNDED | shows {RETURN, LAND} | =
+# A hold that is not shown yet is waited for; the one that is shown completes its request.
+stale MOVING; hold; shows GUIDED | shows {TAKEOFF, MISSION, RETURN, LAND, OTHER} | =
+stale MOVING; hold; shows OTHER  | shows GUIDED | =
+stale MOVING; {hold, abort} | shows HOLD | STALE OURS, $ complete | wait 2 | =
+# The gate's own hold that is shown is not repeated.
+stale MOVING | wait 0.5 | =, sends HOLD, it aborted STALE | shows HOLD; wait 2 | =
+# A commanded mode that is not shown yet is waited for.
+ours; loaded 4; mission; no positions; wait 1.1
+    | shows OTHER; shows RETURN; shows LAND; shows GUIDED | STALE OURS
+# The modes it was flown in change nothing.
+stale {MOVING, TAKING_PICTURE} | shows | =; streams
+stale FLYING_MISSION           | shows | =; silent
+flown OTHER; control; no positions; wait 1.1 | shows HOLD | STALE TAKING
+# A disarmed vehicle is nobody's, and so is one that stands.
+stale <MOVING, TAKING_PICTURE, FLYING_MISSION>
+    | shows disarmed | STALE NONE, it <taken over NOT_ARMED, taken over NOT_ARMED, complete>; silent
+    | wait 1 | = | positions; tick | GROUNDED NONE
+stale {MOVING, TAKING_PICTURE, FLYING_MISSION}
+    | is ON_GROUND | STALE NONE, it taken over NOT_FLYING; silent | wait 1 | =
+# The ground is nothing new to what stood, nor the disarm of what somebody else flies to us.
+stale GROUNDED; is UNDEFINED | is ON_GROUND | =
+flown; no positions; wait 1.1 | shows disarmed | STALE NONE
+# Arming is complete all the same, and being armed completes no other request.
+stale GROUNDED | shows armed | =, it complete
+stale MOVING; remembers armed=no | shows armed | =
+# What is verified no more is held and not streamed, with the reason.
+stale {MOVING, TAKING_PICTURE, FLYING_MISSION}
+    | jumps 20 0 1.5 | HOLDING OURS, sends HOLD, it aborted ESTIMATOR_RESET
+    | shows HOLD; positions; tick | =
+stale {MOVING, TAKING_PICTURE, FLYING_MISSION}
+    | home 5 0 0 | STALE OURS, sends HOLD, it aborted HOME_MOVED; silent
+    | shows HOLD; positions; tick | HOLDING OURS
+stale <MOVING, TAKING_PICTURE, FLYING_MISSION>
+    | fence elsewhere
+    | STALE OURS, sends HOLD, it aborted <OUTSIDE_FENCE, OUTSIDE_FENCE, BAD_MISSION>; silent
+    | shows HOLD; positions; tick | HOLDING OURS
+# What flew again after an outage and landed stands.
+stale MOVING; positions; tick | land; shows LAND; is ON_GROUND; shows disarmed
+    | GROUNDED NONE, sends LAND, it superseded, land accepted complete
+    | land | =, land accepted complete
+""",
+    reported_in_air,
+    knows_nothing,
+)  # fmt: skip
 
 
-def test_a_resume_from_the_grace_of_a_hold_is_refused() -> None:
-    script, _ = stale(State.HOLDING)
-    assert script.refusal(script.ask(Resume())) is Code.STALE
-
-
-@pytest.mark.parametrize("state", [State.RETURNING, State.LANDING])
-def test_who_leaves_after_a_landing_whose_positions_are_old_is_told_how_it_ended(
-    state: State,
-) -> None:
-    """`random_flight.flown(394015001986)`: landed, still armed, and no position any more."""
-    script, request_id = flight(state)
-    script.at(0.0, 0.0, 0.0)
-    script.land_state(LandedState.ON_GROUND)
-    script.reports_position = False
-    script.wait(2.0)
-    assert (state_of(script), ended(script, request_id)) == (State.STALE, "")
-    sent = script.commands()
-    script.feed(OperatorLost("quit"))
-    assert ended(script, request_id) == "aborted OPERATOR_LOST"
-    assert script.commands() == sent
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_what_is_not_heard_or_too_old(row: Row) -> None:
+    row.fly()

@@ -176,8 +176,10 @@ class TestNextDue:
     """`deadline_ns` is the earliest of what is due; asking changes nothing."""
 
     def due(self, script: Script) -> int:
+        before = script.gate.memory
         due_ns = script.gate.deadline_ns
         assert due_ns is not None
+        assert script.gate.memory == before
         return due_ns - script.now_ns
 
     def test_nothing_is_due_with_nobody(self) -> None:

@@ -10,6 +10,7 @@ from msgspec.structs import replace
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle
@@ -114,6 +115,14 @@ class TestBrake:
         assert level is not None
         assert lifted is not None
         assert (level[2], lifted[2]) == (-90.0, -100.0)
+
+
+def test_no_brake_points_below_the_ground() -> None:
+    verifier = verifier_for(DEFAULT, "px4", (0.0, 0.0, 0.0), Origin(47.0, 8.0, 400.0))
+    breach = verifier.predicted_stop((0.0, 130.0, 1.0), (0.0, 20.0, 0.0), floor_applies=False)
+    assert breach is not None
+    assert breach.brake_pos_ned is not None
+    assert breach.brake_pos_ned[2] <= 0.0
 
 
 def test_a_return_climbs_to_its_height_above_home() -> None:

@@ -8,368 +8,150 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.gate.effects import CommandKind, Say
-from gcs.gate.inputs import HeartbeatSeen, MissionLoaded
-from gcs.gate.requests import (
-    Arm,
-    Hold,
-    Land,
-    Resume,
-    ReturnHome,
-    StartMission,
-    TakeControl,
-    TakeOff,
-)
-from gcs.gate.states import Control, FlightMode, LandedState, State
-from tests.unit.gate.reactions import (
-    FLIGHT,
-    Reaction,
-    flight,
-    reaction,
-    state_of,
-    streams,
-    take_off,
-)
-from tests.unit.gate.script import Script, policy
-from tests.unit.gate.situations import UP, lead_to
-
-FLIES_IN = {
-    State.TAKING_OFF: {FlightMode.TAKEOFF, FlightMode.HOLD, FlightMode.GUIDED},
-    State.HOVERING: {FlightMode.GUIDED},
-    State.MOVING: {FlightMode.GUIDED},
-    State.TAKING_PICTURE: {FlightMode.GUIDED},
-    State.FLYING_MISSION: {FlightMode.MISSION},
-    State.RETURNING: {FlightMode.RETURN},
-    State.LANDING: {FlightMode.LAND},
-    State.HOLDING: {FlightMode.HOLD},
-}
-"""A climb is flown in the take-off mode and ends in hold (px4), or in guided (ardupilot)."""
-
-SAFE_MODES = {FlightMode.RETURN: State.RETURNING, FlightMode.LAND: State.LANDING}
-
-FOREIGN = [
-    (state, mode)
-    for state in (*FLIGHT, State.HOLDING)
-    for mode in FlightMode
-    if mode not in FLIES_IN[state] and mode not in SAFE_MODES
-]
-PARTS_OF_A_FLIGHT = [
-    (State.FLYING_MISSION, FlightMode.RETURN),
-    (State.FLYING_MISSION, FlightMode.LAND),
-    (State.RETURNING, FlightMode.LAND),
-]
-"""A mission may end in a return or a landing, and a return ends in a landing."""
-
-FAILSAFES = [
-    (state, mode)
-    for state in (*FLIGHT, State.HOLDING)
-    for mode in SAFE_MODES
-    if mode not in FLIES_IN[state] and (state, mode) not in PARTS_OF_A_FLIGHT
-]
+from gcs.gate.states import Control, State
+from tests.unit.gate.reactions import remember
+from tests.unit.gate.rows import FACTS, Flight, Row, rows
 
 
-def settled(state: State) -> tuple[Script, int]:
-    """In `state` with every commanded mode shown, and too late for a guided mode of ours."""
-    if state is State.HOVERING:
-        script = Script(policy("default"))
-        lead_to(State.HOVERING, script)
-        return script, 0
-    script, request_id = flight(state)
-    if state is State.HOLDING:
-        script.heartbeat(FlightMode.HOLD)
-        script.wait(12.0)
-    return script, request_id
+def interrupted(flight: Flight, state: str, control: str = "OURS") -> None:
+    """STALE out of `state`, with no mode awaited, and one shown that is not asked about."""
+    script = flight.script
+    flight.step(f"stale {'MOVING' if state == 'STREAMING' else state}")
+    remember(script, back_to=State[state], control=Control[control])
+    remember(script, mode=None, asked_mode=None, hold_again_ns=None)
 
 
-@pytest.mark.parametrize(("state", "mode"), FOREIGN)
-def test_a_mode_of_somebody_elses_takes_the_vehicle_over(state: State, mode: FlightMode) -> None:
-    script, request_id = settled(state)
-    taken = "" if state in (State.HOLDING, State.HOVERING) else "taken over MODE_CHANGED"
-    assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-        State.EXTERNAL, Control.NONE, [], taken
-    )
-    assert not streams(script)
-    assert script.gate.active_goal_ned is None
+def overdue(flight: Flight, awaited: str, shown: str) -> None:
+    """The mode that is awaited is overdue this instant, while it climbs on."""
+    modes = {"asked_mode": FACTS["mode"](awaited), "mode": FACTS["mode"](shown)}
+    now_ns = flight.script.now_ns
+    remember(flight.script, asked_until_ns=now_ns, v_ned=(0.0, 0.0, -1.0), **modes)
 
 
-@pytest.mark.parametrize(("state", "mode"), FAILSAFES)
-def test_a_return_or_a_landing_of_the_vehicles_own_is_seen_as_one(
-    state: State, mode: FlightMode
-) -> None:
-    script, request_id = settled(state)
-    taken = "" if state in (State.HOLDING, State.HOVERING) else "taken over MODE_CHANGED"
-    assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-        SAFE_MODES[mode], Control.NONE, [], taken
-    )
-    assert not streams(script)
+ROWS = rows(
+    """
+# A mode of somebody else's takes the vehicle over.
+TAKING_OFF     | shows {MISSION, OTHER}
+    | EXTERNAL NONE, it taken over MODE_CHANGED; goal none; silent
+in HOVERING    | shows {HOLD, TAKEOFF, MISSION, OTHER} | EXTERNAL NONE; goal none; silent
+{MOVING, TAKING_PICTURE} | shows {HOLD, TAKEOFF, MISSION, OTHER}
+    | EXTERNAL NONE, it taken over MODE_CHANGED; goal none; silent
+FLYING_MISSION | shows {GUIDED, HOLD, TAKEOFF, OTHER}
+    | EXTERNAL NONE, it taken over MODE_CHANGED; goal none; silent
+{RETURNING, LANDING} | shows {GUIDED, HOLD, TAKEOFF, MISSION, OTHER}
+    | EXTERNAL NONE, it taken over MODE_CHANGED; goal none; silent
+HOLDING; shows HOLD; wait 12 | shows {GUIDED, TAKEOFF, MISSION, OTHER}
+    | EXTERNAL NONE; goal none; silent
+# A return or a landing of the vehicle's own is seen as one.
+{TAKING_OFF, MOVING, TAKING_PICTURE}
+    | shows <RETURN, LAND> | <RETURNING, LANDING> NONE, it taken over MODE_CHANGED; silent
+{in HOVERING, HOLDING; shows HOLD; wait 12} | shows <RETURN, LAND>
+    | <RETURNING, LANDING> NONE; silent
+LANDING | shows RETURN | RETURNING NONE, it taken over MODE_CHANGED; silent
+# A mission may end in a return or a landing, and a return ends in a landing.
+FLYING_MISSION | shows <RETURN, LAND> | <RETURNING, LANDING> OURS
+RETURNING      | shows LAND           | LANDING OURS
+# The modes that a state is flown in change nothing; a climb ends in hold (px4) or guided.
+TAKING_OFF | shows GUIDED; shows | = | shows HOLD; shows | = | shows TAKEOFF; shows | =
+{in HOVERING, MOVING, TAKING_PICTURE} | shows GUIDED; shows | =
+<FLYING_MISSION, RETURNING, LANDING> | shows <MISSION, RETURN, LAND>; shows | =
+HOLDING; shows HOLD | shows HOLD; shows | =
+# On the ground no mode moves anything.
+GROUNDED | shows {MODES} | =
+# Of a vehicle that somebody else flies a return and a landing are seen.
+EXTERNAL; shows OTHER | shows {GUIDED, HOLD, TAKEOFF, MISSION, OTHER} | =
+EXTERNAL | shows <RETURN, LAND> | <RETURNING, LANDING> NONE, it taken over MODE_CHANGED
+# A mode that is only repeated sends nothing.
+MOVING | shows | =; setpoints none
+
+# A hold that is not shown yet is not given up for another mode.
+HOLDING; shows GUIDED | shows {TAKEOFF, MISSION, RETURN, LAND, OTHER} | = | wait 1.1 | =, sends HOLD
+HOLDING; shows OTHER  | shows GUIDED | = | wait 1.1 | =, sends HOLD
+# While a mode is waited for, others are still those of before.
+ours; loaded 5; {land, return, mission}; shows OTHER | shows GUIDED | =
+ours; loaded 5; {land, return, mission}; shows GUIDED | shows {HOLD, TAKEOFF, OTHER} | =
+ours; loaded 5; land; shows GUIDED    | shows {MISSION, RETURN, LAND} | LANDING OURS
+ours; loaded 5; return; shows GUIDED  | shows {MISSION, RETURN} | RETURNING OURS
+ours; loaded 5; mission; shows GUIDED | shows MISSION | FLYING_MISSION OURS
+ours; loaded 5; return; shows GUIDED  | shows LAND | LANDING OURS
+ours; loaded 5; mission; shows GUIDED | shows <RETURN, LAND> | <RETURNING, LANDING> OURS
+in HOVERING; land | shows GUIDED; shows HOLD | =
+# Control is confirmed by guided and by nothing else; the hold of before is no takeover.
+HOVERING; wait 1.2; shows HOLD | shows GUIDED | HOVERING OURS, it complete
+HOVERING; wait 1.2 | shows OTHER | EXTERNAL NONE, it taken over MODE_CHANGED
+flown OTHER; control | shows HOLD | HOVERING TAKING
+
+# A mode that never comes (5 s): a vehicle still in our guided mode is held, another one is
+# ... somebody else's.
+ours; {land, return}; shows GUIDED; wait 4.9 | wait 0.2
+    | HOLDING OURS, sends HOLD, $ timed out NO_ANSWER
+ours; {land, return}; shows OTHER; wait 4.9 | wait 0.2 | EXTERNAL NONE, $ timed out NO_ANSWER
+ours; loaded 5; mission; shows GUIDED; wait 4.9
+    | wait 0.2 | HOLDING OURS, sends HOLD, mission timed out NO_ANSWER
+ours; loaded 5; mission; shows OTHER; wait 4.9
+    | wait 0.2 | EXTERNAL NONE, mission timed out NO_ANSWER
+# A return that lands at once shows a mode of its own.
+ours; return; shows LAND; wait 4.9 | wait 0.2 | LANDING OURS
+    | shows RETURN | RETURNING NONE, return taken over MODE_CHANGED
+# A mission that does not begin on the ground leaves the vehicle there.
+armed; loaded 5; mission; wait 4.9 | wait 0.2 | GROUNDED NONE, mission timed out NO_ANSWER
+# A take-off in a pilot's mode stays on the ground, or is the pilot's in the air.
+armed; take-off 1.5; shows OTHER | wait 5.2 | GROUNDED NONE, take-off timed out NO_ANSWER
+armed; take-off 1.5; shows OTHER; is IN_AIR | nothing | TAKING_OFF OURS
+    | wait 5.2 | EXTERNAL NONE, take-off timed out NO_ANSWER
+climb | shows OTHER | GROUNDED NONE, it taken over MODE_CHANGED
+
+# Our own guided command may take effect after it was given up: within 10 s it is held until shown.
+flown; control; wait 6.2
+    | shows GUIDED | EXTERNAL NONE, sends HOLD | wait 1 | =, sends HOLD | shows HOLD | = | wait 3
+    | =
+# A hold that nobody asked for gives way to a mode that somebody chose.
+flown; control; wait 6.2; shows GUIDED | shows {OTHER, MISSION, TAKEOFF} | EXTERNAL NONE | wait 3
+    | =
+# Later it is somebody else's.
+flown; control; wait 11.2 | shows GUIDED | EXTERNAL NONE
+# A held vehicle that goes guided for us is held again until it shows.
+in HOLDING; resume; wait 1.2; hold; shows HOLD
+    | shows GUIDED | HOLDING OURS, sends HOLD | wait 1.1 | =, sends HOLD
+
+# STALE: a mode that belongs to what was interrupted takes nothing over, any other does.  Return
+# ... and land are the vehicle's own way down, whatever was interrupted.
+interrupted TAKING_OFF | shows {GUIDED, HOLD, TAKEOFF} | STALE OURS
+interrupted TAKING_OFF | shows {MISSION, OTHER} | STALE NONE, it taken over MODE_CHANGED
+interrupted {HOVERING, MOVING, STREAMING, TAKING_PICTURE} | shows GUIDED | STALE OURS
+interrupted {HOVERING, MOVING, STREAMING, TAKING_PICTURE}
+    | shows {HOLD, TAKEOFF, MISSION, OTHER} | STALE NONE, it taken over MODE_CHANGED
+interrupted FLYING_MISSION | shows MISSION | STALE OURS
+interrupted FLYING_MISSION | shows {GUIDED, HOLD, TAKEOFF, OTHER}
+    | STALE NONE, it taken over MODE_CHANGED
+interrupted HOLDING | shows HOLD | STALE OURS
+interrupted HOLDING | shows {GUIDED, TAKEOFF, MISSION, OTHER}
+    | STALE NONE, it taken over MODE_CHANGED
+# While control is being taken the hold of before fits too.
+interrupted HOVERING TAKING | shows {GUIDED, HOLD} | STALE TAKING
+interrupted HOVERING TAKING | shows {TAKEOFF, MISSION, OTHER}
+    | STALE NONE, it taken over MODE_CHANGED
+# An awaited mode that is overdue is no loss in a mode that fits, and one in any other.
+TAKING_OFF; overdue TAKEOFF {TAKEOFF, HOLD, GUIDED} | bare-tick | =; asks none
+FLYING_MISSION; overdue MISSION MISSION | bare-tick | =; asks none
+RETURNING; overdue RETURN {RETURN, LAND} | bare-tick | =; asks none
+LANDING; overdue LAND LAND | bare-tick | =; asks none
+<TAKING_OFF, FLYING_MISSION, RETURNING, LANDING>; overdue <TAKEOFF, MISSION, RETURN, LAND> OTHER
+    | bare-tick | EXTERNAL NONE, it timed out NO_ANSWER
+# A hold that was refused is asked for again whatever the mode; its request ended with the refusal.
+stale MOVING; abort; fails HOLD | shows {TAKEOFF, MISSION, RETURN, LAND, OTHER} | STALE OURS
+    | position | HOLDING OURS
+# Guided is asked for and awaited only with a fresh position; what the outage took is not given
+# ... back.
+flown; control; no positions | wait 1.3 | STALE TAKING
+    | positions; tick | HOVERING TAKING, sends GUIDED
+    | wait 4.65 | = | wait 0.1 | EXTERNAL NONE, sends HOLD, control timed out NO_ANSWER
+""",
+    interrupted,
+    overdue,
+)  # fmt: skip
 
 
-@pytest.mark.parametrize(("state", "mode"), PARTS_OF_A_FLIGHT)
-def test_the_return_or_landing_that_belongs_to_the_flight_is_part_of_the_request(
-    state: State, mode: FlightMode
-) -> None:
-    script, request_id = settled(state)
-    assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-        SAFE_MODES[mode], Control.OURS, [], ""
-    )
-
-
-@pytest.mark.parametrize("state", [*FLIGHT, State.HOLDING])
-def test_the_modes_that_a_state_is_flown_in_change_nothing(state: State) -> None:
-    script, request_id = settled(state)
-    control = script.gate.control
-    for mode in sorted(FLIES_IN[state]):
-        script.heartbeat(mode)
-        assert reaction(script, request_id, lambda s: s.heartbeat()) == Reaction(
-            state, control, [], ""
-        )
-
-
-@pytest.mark.parametrize("mode", list(FlightMode))
-def test_on_the_ground_no_mode_moves_anything(mode: FlightMode) -> None:
-    script, request_id = flight(State.GROUNDED)
-    assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-        State.GROUNDED, Control.NONE, [], ""
-    )
-
-
-@pytest.mark.parametrize("mode", list(FlightMode))
-def test_of_a_vehicle_that_somebody_else_flies_a_return_and_a_landing_are_seen(
-    mode: FlightMode,
-) -> None:
-    script, request_id = flight(State.EXTERNAL)
-    if mode is FlightMode.HOLD:
-        script.heartbeat(FlightMode.OTHER)
-    after = SAFE_MODES.get(mode, State.EXTERNAL)
-    ended = "taken over MODE_CHANGED" if mode in SAFE_MODES else ""
-    assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-        after, Control.NONE, [], ended
-    )
-
-
-class TestWhileAModeIsWaitedFor:
-    @pytest.mark.parametrize("mode", [m for m in FlightMode if m is not FlightMode.HOLD])
-    def test_a_hold_that_is_not_shown_yet_is_not_given_up_for_another_mode(
-        self, mode: FlightMode
-    ) -> None:
-        script, request_id = flight(State.HOLDING)
-        script.heartbeat(FlightMode.OTHER if mode is FlightMode.GUIDED else FlightMode.GUIDED)
-        assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-            State.HOLDING, Control.OURS, [], ""
-        )
-        script.wait(1.1)
-        assert script.commands() == [CommandKind.HOLD]
-
-    @pytest.mark.parametrize(
-        ("wanted", "state", "own"),
-        [
-            (Land(), State.LANDING, FlightMode.LAND),
-            (ReturnHome(), State.RETURNING, FlightMode.RETURN),
-            (StartMission(), State.FLYING_MISSION, FlightMode.MISSION),
-        ],
-        ids=["land", "return", "mission"],
-    )
-    @pytest.mark.parametrize("mode", list(FlightMode))
-    def test_other_modes_are_still_those_of_before(
-        self, wanted: Land | ReturnHome | StartMission, state: State, own: FlightMode,
-        mode: FlightMode,
-    ) -> None:  # fmt: skip
-        script = Script(policy("default")).take_control(UP)
-        script.feed(MissionLoaded("square", 5))
-        request_id = script.ask(wanted)
-        after = state
-        if mode in SAFE_MODES and (state, mode) in PARTS_OF_A_FLIGHT:
-            after = SAFE_MODES[mode]
-        other = FlightMode.OTHER if mode is FlightMode.GUIDED else FlightMode.GUIDED
-        script.heartbeat(other)
-        assert state_of(script) is state
-        assert reaction(script, request_id, lambda s: s.heartbeat(mode)) == Reaction(
-            after, Control.OURS, [], ""
-        )
-
-    def test_control_is_confirmed_by_guided_and_by_nothing_else(self) -> None:
-        script, request_id = flight(State.HOVERING)
-        script.wait(1.2)
-        script.heartbeat(FlightMode.HOLD)
-        assert script.gate.control is Control.TAKING
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.GUIDED)) == Reaction(
-            State.HOVERING, Control.OURS, [], "complete"
-        )
-
-    def test_while_control_is_taken_the_mode_of_a_pilot_ends_it(self) -> None:
-        script, request_id = flight(State.HOVERING)
-        script.wait(1.2)
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.OTHER)) == Reaction(
-            State.EXTERNAL, Control.NONE, [], "taken over MODE_CHANGED"
-        )
-
-    def test_a_hold_shown_while_control_is_taken_is_the_mode_of_before(self) -> None:
-        script = Script(policy("default"))
-        script.mode = FlightMode.OTHER
-        script.fly(UP)
-        request_id = script.ask(TakeControl())
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.HOLD)) == Reaction(
-            State.HOVERING, Control.TAKING, [], ""
-        )
-
-
-class TestAModeThatNeverComes:
-    """The policy's time for the heartbeat to show a commanded mode is 5 s."""
-
-    def overdue(self, wanted: Land | ReturnHome, mode: FlightMode) -> tuple[Script, int]:
-        script = Script(policy("default")).take_control(UP)
-        request_id = script.ask(wanted)
-        script.heartbeat(mode)
-        script.forget()
-        script.wait(4.9)
-        assert not script.ended(request_id)
-        return script, request_id
-
-    @pytest.mark.parametrize("wanted", [Land(), ReturnHome()], ids=["land", "return"])
-    def test_a_vehicle_still_in_our_guided_mode_is_held(self, wanted: Land | ReturnHome) -> None:
-        script, request_id = self.overdue(wanted, FlightMode.GUIDED)
-        assert reaction(script, request_id, lambda s: s.wait(0.2)) == Reaction(
-            State.HOLDING, Control.OURS, [CommandKind.HOLD], "timed out NO_ANSWER"
-        )
-
-    @pytest.mark.parametrize("wanted", [Land(), ReturnHome()], ids=["land", "return"])
-    def test_a_vehicle_in_another_mode_is_somebody_elses(self, wanted: Land | ReturnHome) -> None:
-        script, request_id = self.overdue(wanted, FlightMode.OTHER)
-        assert reaction(script, request_id, lambda s: s.wait(0.2)) == Reaction(
-            State.EXTERNAL, Control.NONE, [], "timed out NO_ANSWER"
-        )
-
-    def test_a_return_that_lands_at_once_shows_a_mode_of_its_own(self) -> None:
-        script, request_id = self.overdue(ReturnHome(), FlightMode.LAND)
-        assert reaction(script, request_id, lambda s: s.wait(0.2)) == Reaction(
-            State.LANDING, Control.OURS, [], ""
-        )
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.RETURN)) == Reaction(
-            State.RETURNING, Control.NONE, [], "taken over MODE_CHANGED"
-        )
-
-    @pytest.mark.parametrize(
-        ("mode", "after", "control", "sent"),
-        [
-            (FlightMode.GUIDED, State.HOLDING, Control.OURS, [CommandKind.HOLD]),
-            (FlightMode.OTHER, State.EXTERNAL, Control.NONE, []),
-        ],
-    )
-    def test_so_it_is_with_a_mission(
-        self, mode: FlightMode, after: State, control: Control, sent: list[CommandKind]
-    ) -> None:
-        script = Script(policy("default")).take_control(UP)
-        script.feed(MissionLoaded("square", 5))
-        request_id = script.ask(StartMission())
-        script.heartbeat(mode)
-        script.wait(4.9)
-        assert reaction(script, request_id, lambda s: s.wait(0.2)) == Reaction(
-            after, control, sent, "timed out NO_ANSWER"
-        )
-
-    def test_a_mission_that_does_not_begin_on_the_ground_leaves_the_vehicle_there(self) -> None:
-        script = Script(policy("default")).connect()
-        script.ask(Arm())
-        script.heartbeat(armed=True)
-        script.feed(MissionLoaded("square", 5))
-        request_id = script.ask(StartMission())
-        script.wait(4.9)
-        assert reaction(script, request_id, lambda s: s.wait(0.2)) == Reaction(
-            State.GROUNDED, Control.NONE, [], "timed out NO_ANSWER"
-        )
-
-    def climb(self) -> tuple[Script, int]:
-        """A take-off whose mode is not shown."""
-        script = Script(policy("default")).connect()
-        script.ask(Arm())
-        script.heartbeat(armed=True)
-        return script, script.ask(TakeOff(UP))
-
-    def test_px4_may_have_passed_through_take_off_to_hold_unseen(self) -> None:
-        script, request_id = self.climb()
-        assert reaction(script, request_id, lambda s: s.wait(5.2)) == Reaction(
-            State.TAKING_OFF, Control.OURS, [], ""
-        )
-        script.land_state(LandedState.IN_AIR)
-        script.v_ned = (0.0, 0.0, -1.0)
-        script.at(0.0, 0.0, UP, (0.0, 0.0, 1.0))
-        script.tick()
-        assert state_of(script) is State.HOVERING  # hold mode says that the climb is over
-
-    def test_a_take_off_in_a_pilots_mode_stays_on_the_ground(self) -> None:
-        script, request_id = self.climb()
-        script.heartbeat(FlightMode.OTHER)
-        assert reaction(script, request_id, lambda s: s.wait(5.2)) == Reaction(
-            State.GROUNDED, Control.NONE, [], "timed out NO_ANSWER"
-        )
-
-    def test_a_take_off_in_a_pilots_mode_in_the_air_is_the_pilots(self) -> None:
-        script, request_id = self.climb()
-        script.heartbeat(FlightMode.OTHER)
-        script.land_state(LandedState.IN_AIR)
-        assert state_of(script) is State.TAKING_OFF
-        assert reaction(script, request_id, lambda s: s.wait(5.2)) == Reaction(
-            State.EXTERNAL, Control.NONE, [], "timed out NO_ANSWER"
-        )
-
-    def test_a_pilots_mode_after_the_take_off_mode_was_shown_ends_it_on_the_ground(self) -> None:
-        script = Script(policy("default"))
-        request_id = take_off(script)
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.OTHER)) == Reaction(
-            State.GROUNDED, Control.NONE, [], "taken over MODE_CHANGED"
-        )
-
-
-class TestGuidedThatComesLate:
-    """Our own guided command may take effect after it was given up: within 10 s it is ours."""
-
-    def given_up(self) -> Script:
-        script = Script(policy("default")).fly(UP)
-        script.ask(TakeControl())
-        script.wait(6.2)
-        assert state_of(script) is State.EXTERNAL
-        return script
-
-    def test_somebody_elses_vehicle_that_goes_guided_for_us_is_held_until_it_shows(self) -> None:
-        script = self.given_up()
-        unchanged = Reaction(State.EXTERNAL, Control.NONE, [], "")
-        again = unchanged._replace(sent=[CommandKind.HOLD])
-        assert reaction(script, 0, lambda s: s.heartbeat(FlightMode.GUIDED)) == again
-        assert reaction(script, 0, lambda s: s.wait(1.0)) == again
-        assert reaction(script, 0, lambda s: s.heartbeat(FlightMode.HOLD)) == unchanged
-        assert reaction(script, 0, lambda s: s.wait(3.0)) == unchanged
-
-    @pytest.mark.parametrize("mode", [FlightMode.OTHER, FlightMode.MISSION, FlightMode.TAKEOFF])
-    def test_a_hold_that_nobody_asked_for_gives_way_to_a_mode_that_somebody_chose(
-        self, mode: FlightMode
-    ) -> None:
-        script = self.given_up()
-        script.heartbeat(FlightMode.GUIDED)
-        unchanged = Reaction(State.EXTERNAL, Control.NONE, [], "")
-        assert reaction(script, 0, lambda s: s.heartbeat(mode)) == unchanged
-        assert reaction(script, 0, lambda s: s.wait(3.0)) == unchanged
-
-    def test_later_it_is_somebody_elses(self) -> None:
-        script = self.given_up()
-        script.wait(5.0)
-        assert reaction(script, 0, lambda s: s.heartbeat(FlightMode.GUIDED)) == Reaction(
-            State.EXTERNAL, Control.NONE, [], ""
-        )
-
-    def test_a_held_vehicle_that_goes_guided_for_us_is_held_again_until_it_shows(self) -> None:
-        script = Script(policy("default"))
-        lead_to(State.HOLDING, script)
-        script.ask(Resume())
-        script.wait(1.2)
-        script.ask(Hold())
-        script.heartbeat(FlightMode.HOLD)
-        assert reaction(script, 0, lambda s: s.heartbeat(FlightMode.GUIDED)) == Reaction(
-            State.HOLDING, Control.OURS, [CommandKind.HOLD], ""
-        )
-        assert reaction(script, 0, lambda s: s.wait(1.1)).sent == [CommandKind.HOLD]
-
-
-def test_a_mode_that_is_only_repeated_says_nothing() -> None:
-    script, _ = flight(State.MOVING)
-    beat = HeartbeatSeen(script.armed, script.mode, script.mode.value)
-    assert [e for e in script.feed(beat) if not isinstance(e, Say)] == []
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_what_a_mode_does(row: Row) -> None:
+    row.fly()

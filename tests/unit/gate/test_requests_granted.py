@@ -1,170 +1,129 @@
-"""What is granted, what it begins, and which request it displaces."""
+"""What is granted, what it begins, which request it displaces, and what the operator is told."""
 
 from __future__ import annotations
 
 import pytest
 
-from gcs.gate.effects import CommandKind, Outcome, Ruling, SwitchedFence
-from gcs.gate.inputs import (
-    HomeSeen,
-    MissionLoaded,
-    PhotoSeen,
-    VerifierChanged,
-)
-from gcs.gate.refusal import Code
-from gcs.gate.requests import (
-    GoTo,
-    Hold,
-    Request,
-    Resume,
-    StartMission,
-    SwitchFence,
-    TakeControl,
-    TakePhoto,
-)
-from gcs.gate.states import Control, FlightMode, State
-from tests.unit.gate.reactions import (
-    AIRBORNE,
-    FLIGHT,
-    GUIDED_STATES,
-    MODE_STATES,
-    STATES,
-    Reaction,
-    ended,
-    flight,
-    reaction,
-    state_of,
-    streams,
-)
-from tests.unit.gate.script import Script, policy
-from tests.unit.gate.situations import UP, lead_to
-
-GOAL = GoTo((0.0, 4.0, -UP))
+from gcs.gate.effects import SwitchedFence
+from gcs.gate.inputs import Requested
+from gcs.gate.requests import SwitchFence
+from tests.unit.gate.rows import Flight, Row, rows
 
 
-class TestGranted:
-    @pytest.mark.parametrize("wanted", [TakeControl(), Resume()], ids=["control", "resume"])
-    def test_control_that_is_ours_is_complete_at_once(self, wanted: Request) -> None:
-        script = Script(policy("default"))
-        lead_to(State.HOVERING, script)
-        before = script.gate.memory
-        asked = script.ask(wanted)
-        assert ended(script, asked) == "complete"
-        assert script.gate.memory == before
-
-    @pytest.mark.parametrize(
-        ("state", "wanted"),
-        [
-            (State.EXTERNAL, TakeControl()),
-            (State.EXTERNAL, Resume()),
-            (State.HOLDING, Resume()),
-        ],
-    )
-    def test_control_is_taken_at_the_present_place(self, state: State, wanted: Request) -> None:
-        script, request_id = flight(state)
-        assert reaction(script, request_id, lambda s: s.ask(wanted)) == Reaction(
-            State.HOVERING, Control.TAKING, [], "superseded SUPERSEDED"
-        )
-        assert script.gate.hold_goal_ned == (0.0, 0.0, -UP)
-        assert streams(script)
-
-    def test_a_picture_is_asked_for_and_the_place_is_streamed(self) -> None:
-        script = Script(policy("default"))
-        lead_to(State.HOVERING, script)
-        asked = script.ask(TakePhoto())
-        assert reaction(script, asked, lambda s: None) == Reaction(
-            State.TAKING_PICTURE, Control.OURS, [], ""
-        )
-        assert script.gate.memory.outstanding == ((asked, CommandKind.PHOTO),)
-        assert streams(script)
-        script.feed(PhotoSeen(1, ok=True))
-        assert ended(script, asked) == "complete"
-        assert state_of(script) is State.HOVERING
-
-    @pytest.mark.parametrize("state", [State.GROUNDED, State.HOVERING])
-    def test_a_mission_is_started_and_then_nothing_is_streamed(self, state: State) -> None:
-        script = Script(policy("default"))
-        lead_to(state, script)
-        script.feed(MissionLoaded("square", 4))
-        asked = script.ask(StartMission())
-        assert (state_of(script), script.gate.control) == (State.FLYING_MISSION, Control.OURS)
-        assert script.gate.memory.outstanding == ((asked, CommandKind.START_MISSION),)
-        assert streams(script) is (state is State.HOVERING), "held until it shows the mode"
-        script.heartbeat(FlightMode.MISSION)
-        assert not streams(script)
-
-    @pytest.mark.parametrize("state", STATES)
-    def test_the_fence_is_switched_where_the_policy_lets_it(self, state: State) -> None:
-        script, request_id = flight(state, fence_switchable=True)
-        asked = script.ask(SwitchFence(on=True))
-        assert ended(script, asked) == "complete"
-        assert script.all(SwitchedFence) == [SwitchedFence(on=True)]
-        if state is State.FLYING_MISSION:
-            assert ended(script, request_id) == "aborted BAD_MISSION"  # verified by another fence
-            return
-        assert state_of(script) is state
-        assert not script.commands()
-        assert not script.ended(request_id)
-
-    def test_a_newer_goal_takes_the_place_of_one_that_waits_for_its_tick(self) -> None:
-        script = Script(policy("default"))
-        lead_to(State.HOVERING, script)
-        first, second = script.ask(GoTo((5.0, 0.0, -UP))), script.ask(GOAL)
-        assert script.verdict(first).ruling is Ruling.SUPERSEDED
-        script.tick()
-        assert script.gate.active_goal_ned == GOAL.goal_ned
-        assert script.verdict(second).ruling is Ruling.ACCEPTED
-        assert not script.ended(first)
-
-    def test_the_owner_of_a_goal_may_replace_it_where_the_policy_says_so(self) -> None:
-        script, request_id = flight(State.MOVING, retarget="replace")
-        assert script.refusal(script.ask(GOAL, source="somebody else")) is Code.BUSY
-        script.ask(GOAL)
-        assert not script.ended(request_id)
-        assert reaction(script, request_id, lambda s: s.tick()) == Reaction(
-            State.MOVING, Control.OURS, [], "superseded SUPERSEDED"
-        )
-        assert script.gate.active_goal_ned == GOAL.goal_ned
-
-    def test_one_that_does_not_clear_leaves_the_goal_that_flies(self) -> None:
-        script, request_id = flight(State.MOVING, retarget="replace")
-        goal_ned = script.gate.active_goal_ned
-        asked = script.ask(GoTo((0.0, 500.0, -UP)))
-        assert reaction(script, request_id, lambda s: s.tick()) == Reaction(
-            State.MOVING, Control.OURS, [], ""
-        )
-        assert script.refusal(asked) is Code.OUTSIDE_FENCE
-        assert script.gate.active_goal_ned == goal_ned
-
-    def test_a_goal_that_does_not_clear_leaves_the_hover(self) -> None:
-        script = Script(policy("default"))
-        lead_to(State.HOVERING, script)
-        asked = script.ask(GoTo((0.0, 500.0, -UP)))
-        assert reaction(script, asked, lambda s: s.tick()) == Reaction(
-            State.HOVERING, Control.OURS, [], ""
-        )
-        assert script.refusal(asked) is Code.OUTSIDE_FENCE
-        assert streams(script)
+def switched(flight: Flight) -> None:
+    """The fence is switched, and the new one is not told yet."""
+    flight.script.gate.handle(Requested(99, "keyboard", SwitchFence(on=True)), flight.script.now_ns)
 
 
-def test_every_accepted_request_has_one_outcome_and_every_refused_none() -> None:
-    script, request_id = flight(State.MOVING)
-    refused = script.ask(TakePhoto())
-    accepted = script.ask(Hold())
-    script.heartbeat(FlightMode.HOLD)
-    ids = [outcome.request_id for outcome in script.all(Outcome)]
-    assert ids == [request_id, accepted]
-    assert refused not in ids
+def is_on(flight: Flight) -> None:
+    assert flight.script.all(SwitchedFence) == [SwitchedFence(on=True)]
 
 
-def test_states_named_here_are_all_that_can_be_reached() -> None:
-    assert {*AIRBORNE, State.NO_VEHICLE, State.STALE, State.GROUNDED} == set(STATES)
-    assert {State.TAKING_OFF, *GUIDED_STATES, *MODE_STATES} == set(FLIGHT)
+ROWS = rows(
+    """
+# Control is taken at the present place.
+EXTERNAL | {control, resume} | HOVERING TAKING, it superseded, $ accepted; holds 0 0 1.5; streams
+HOLDING  | resume            | HOVERING TAKING, it superseded, $ accepted; holds 0 0 1.5; streams
+# ArduPilot is asked for guided at once, px4 when the stream is a second old, and once.
+ardupilot: flown | control; tick | HOVERING TAKING, sends GUIDED, control accepted
+flown | control; wait 1 | HOVERING TAKING, control accepted
+      | wait 0.05 | =, sends GUIDED | wait 1.95 | =
+# A vehicle that already flies is external; on the ground there is no control to take.
+flown | goto 1 0 1.5 | EXTERNAL NONE, goto refused NOT_IN_CONTROL
+connected | control | GROUNDED NONE, control refused NOT_FLYING
+# Control that is not confirmed ends in hold and external; guided that comes then is held.
+flown | control; wait 6.1 | =, sends GUIDED HOLD, control accepted timed out NO_ANSWER
+      | shows GUIDED | =, sends HOLD
+# A vehicle that refuses guided ends the request, with its words.
+flown; control; wait 1.1
+    | rejects GUIDED no position | EXTERNAL NONE, sends HOLD, control aborted VEHICLE_REFUSED;
+    ... says "no position"; says "TEMPORARILY_REJECTED"
+flown; control; wait 1.1
+    | fails GUIDED | EXTERNAL NONE, sends HOLD, control aborted VEHICLE_REFUSED;
+    ... says "the vehicle refused guided mode (FAILED)"
+# A picture is asked for and the place is streamed; one seen before it is not ours.
+in HOVERING; photo seen 7
+    | photo | TAKING_PICTURE OURS, sends PHOTO, photo accepted; awaits PHOTO; streams
+    | photo seen 7 | = | photo seen 8 | HOVERING OURS, photo complete
+# A mission is started; held in its place until it is shown, and then nothing is streamed.
+armed; loaded 4
+    | mission
+    | FLYING_MISSION OURS, sends START_MISSION, mission accepted; awaits START_MISSION; silent
+    | shows MISSION | =; silent
+in HOVERING; loaded 4
+    | mission
+    | FLYING_MISSION OURS, sends START_MISSION, mission accepted; awaits START_MISSION; streams
+    | shows MISSION | =; silent
+# The fence is switched where the policy lets it; a mission was verified by another one.
+fence_switchable=yes: {STATES -FLYING_MISSION}
+    | fence-on; is-on | =, fence-on accepted complete; says "the fence is on"
+fence_switchable=yes: FLYING_MISSION
+    | fence-on; is-on
+    | HOLDING OURS, sends HOLD, it aborted BAD_MISSION, fence-on accepted complete
+fence_switchable=yes: connected | fence-off
+    | =, fence-off accepted complete; says "the fence is off"
+# Between the switch and the new fence no mission starts.
+lab: ours; loaded 4; switched | mission | HOVERING OURS, mission refused NO_ORIGIN
+# Switched on again it stops a flight outside.
+lab: ours 0.5; fence-off; goto 30 0 1
+    | tick | MOVING OURS, goto accepted
+    | fence-on | HOLDING OURS, sends HOLD, goto aborted OUTSIDE_FENCE, fence-on accepted complete
+# A newer goal takes the place of one that waits for its tick.
+in HOVERING; goto 0 5 1.5 | go | =, goto replaced; goal 0 0 1.5
+    | tick | MOVING OURS, go accepted; goal 4 0 1.5
+# The owner of a goal may replace it where the policy says so.
+retarget=replace: MOVING | another's go | =, go refused BUSY | go | =
+    | tick | =, it superseded, go accepted; goal 4 0 1.5
+# One that does not clear leaves the goal that flies, or the hover.
+retarget=replace: MOVING | goto 500 0 1.5; tick | =, goto refused OUTSIDE_FENCE; goal 3 0 1.5
+in HOVERING | goto 500 0 1.5; tick | =, goto refused OUTSIDE_FENCE; streams
+# Every accepted request has one outcome and every refused none.
+MOVING | photo; hold; shows HOLD
+       | HOLDING OURS, sends HOLD, it aborted OPERATOR, photo refused BUSY, hold accepted complete
+# Home and fence told again on the ground change nothing.
+GROUNDED | same-fence | =; same | home 0 5 0 | =
+
+# A refusal is one warning with its code and its sentence.
+MOVING | photo | =, photo refused BUSY;
+    ... tells WARNING Refused (BUSY): another request is under way:
+    ... MOVING, goal (3.00 E, 0.00 N, 1.50 U)
+# Completion is told and is no warning; what is accepted is not told.
+connected | arm         | =, sends ARM, arm accepted; tells nothing
+          | shows armed | =, arm complete; tells INFO Complete: arm
+# A goal that a newer one replaces before its tick is not refused.
+ours | goto 3 0 1.5; go | =, goto replaced; warns not
+# Any other end is a warning with the request and the reason.
+ours; goto 3 0 1.5; tick
+    | hold | HOLDING OURS, sends HOLD, goto aborted OPERATOR, hold accepted;
+    ... warns goto: aborted: stopped by the operator
+# Of a vehicle that another flies it is told that nothing is done.
+BATTERY_LOW=HOLD: EXTERNAL | raised BATTERY_LOW | =;
+    ... says "HOLD: battery_low: bad"; says "nothing is done about it"
+BATTERY_LOW=CAUTION: EXTERNAL | raised BATTERY_LOW | =; tells WARNING CAUTION: battery_low: bad
+# The severity is told with what is wrong, also where the return that it demands is blocked.
+BATTERY_LOW=HOLD: MOVING | raised BATTERY_LOW | HOLDING OURS, sends HOLD, it aborted SEVERITY;
+    ... says "severity is HOLD: battery_low"
+BATTERY_LOW=RETURN: MOVING; remembers return_up_m=none
+    | raised BATTERY_LOW | HOLDING OURS, sends HOLD, it aborted SEVERITY;
+    ... says "severity is RETURN: battery_low"
+# A pilot's mode is why a goal that waits for its tick is refused.
+ours; goto 3 0 1.5 | shows {HOLD, TAKEOFF, OTHER} | EXTERNAL NONE, goto refused MODE_CHANGED
+# A hold that nobody answers is told once, also where its last try ends after it was commanded anew.
+MOVING | hold; ignores HOLD | HOLDING OURS, sends HOLD, it aborted OPERATOR, hold accepted;
+    ... says "No answer to the request for hold mode"
+    | wait 1; ignores HOLD; ignores HOLD; wait 1; ignores HOLD | =, sends HOLD HOLD;
+    ... unsaid "No answer"
+# Silence is told again after an answer, and about something else.
+HOLDING; ignores HOLD; wait 1 | ignores HOLD | =; unsaid "No answer"
+    | wait 1; accepts HOLD | =, sends HOLD; unsaid "No answer"
+    | wait 1; ignores HOLD | =, sends HOLD; says "No answer"
+climb; abort | ignores HOLD | =; says "No answer"
+    | ignores DISARM | =, abort timed out NO_ANSWER; says "No answer"
+""",
+    switched, is_on,
+)  # fmt: skip
 
 
-def test_home_and_fence_told_again_on_the_ground_change_nothing() -> None:
-    script, request_id = flight(State.GROUNDED)
-    verifier = script.gate.memory.verifier
-    assert verifier is not None
-    assert reaction(script, request_id, lambda s: s.feed(VerifierChanged(verifier))).ended == ""
-    assert reaction(script, request_id, lambda s: s.feed(HomeSeen((0.0, 5.0, 0.0)))).ended == ""
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_what_is_granted(row: Row) -> None:
+    row.fly()

@@ -1,407 +1,237 @@
-"""Hold, abort, land and disarm in each state: on the ground, in the air, and where nobody knows."""
+"""Hold, abort, land, return and disarm in each state: on the ground, in the air, and where nobody
+knows."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from gcs.gate.effects import CommandKind, Ruling
-from gcs.gate.inputs import (
-    ReturnHeightSeen,
-)
-from gcs.gate.refusal import Code
-from gcs.gate.requests import (
-    Abort,
-    Arm,
-    Disarm,
-    Hold,
-    Land,
-    Request,
-    ReturnHome,
-)
-from gcs.gate.states import Control, FlightMode, LandedState, State
-from tests.unit.gate.reactions import (
-    AIRBORNE,
-    Reaction,
-    default_policy,
-    ended,
-    flight,
-    follows_setpoints,
-    reaction,
-    state_of,
-    streams,
-    take_off,
-)
-from tests.unit.gate.script import Script, policy
-from tests.unit.gate.situations import lead_to
+from gcs.gate.airspace.verifier import verifier_for
+from gcs.gate.airspace.zones import Zone
+from gcs.gate.geometry import Circle
+from gcs.gate.inputs import VerifierChanged
+from tests.unit.gate.rows import Flight, Row, rows
 
 
-class TestHoldAndAbort:
-    @pytest.mark.parametrize("wanted", [Hold(), Abort()], ids=["hold", "abort"])
-    @pytest.mark.parametrize("state", AIRBORNE)
-    def test_in_the_air_it_holds_at_once_and_ends_what_was_under_way(
-        self, state: State, wanted: Request
-    ) -> None:
-        script, request_id = flight(state)
-        assert reaction(script, request_id, lambda s: s.ask(wanted)) == Reaction(
-            State.HOLDING, Control.OURS, [CommandKind.HOLD], "aborted OPERATOR"
-        )
-        asked = script._next_id
-        assert script.verdict(asked).ruling is Ruling.ACCEPTED
-        assert ended(script, asked) == ""
-        script.heartbeat(FlightMode.HOLD)
-        assert ended(script, asked) == "complete"
-        assert reaction(script, asked, lambda s: s.wait(3.0)).sent == []
-
-    @pytest.mark.parametrize("wanted", [Hold(), Abort()], ids=["hold", "abort"])
-    def test_a_take_off_that_stands_may_come_yet_so_it_is_held_and_disarmed(
-        self, wanted: Request
-    ) -> None:
-        script = Script(policy("default"))
-        request_id = take_off(script)
-        assert reaction(script, request_id, lambda s: s.ask(wanted)) == Reaction(
-            State.GROUNDED,
-            Control.NONE,
-            [CommandKind.HOLD, CommandKind.DISARM],
-            "aborted OPERATOR",
-        )
-        script.forget()
-        script.wait(1.1)
-        assert script.commands() == [CommandKind.HOLD]
-
-    @pytest.mark.parametrize("wanted", [Hold(), Abort()], ids=["hold", "abort"])
-    @pytest.mark.parametrize("state", [State.MOVING, State.FLYING_MISSION])
-    def test_where_the_position_is_too_old_it_holds_and_streams_no_more(
-        self, state: State, wanted: Request
-    ) -> None:
-        script, request_id = flight(state)
-        script.reports_position = False
-        script.wait(1.1)
-        assert state_of(script) is State.STALE
-        assert reaction(script, request_id, lambda s: s.ask(wanted)) == Reaction(
-            State.STALE, Control.OURS, [CommandKind.HOLD], "aborted OPERATOR"
-        )
-        assert not streams(script)
-        script.reports_position = True
-        script.tick()
-        assert state_of(script) is State.HOLDING
-
-    def test_abort_of_a_vehicle_that_is_not_heard_is_sent_until_its_time_is_over(self) -> None:
-        script, request_id = flight(State.NO_VEHICLE)
-        assert reaction(script, request_id, lambda s: s.ask(Abort())) == Reaction(
-            State.NO_VEHICLE, Control.NONE, [CommandKind.HOLD], "aborted OPERATOR"
-        )
-        assert reaction(script, script._next_id, lambda s: s.wait(3.0)) == Reaction(
-            State.NO_VEHICLE, Control.NONE, [CommandKind.HOLD] * 3, ""
-        )
-        script.wait(2.1)
-        assert ended(script, script._next_id).startswith("timed out")
-
-    @pytest.mark.parametrize("wanted", [Hold(), Abort(), Land(), Disarm()])
-    def test_nothing_is_asked_of_nobody(self, wanted: Request) -> None:
-        script = Script(policy("default"))
-        assert script.refusal(script.ask(wanted)) is Code.NO_VEHICLE
-        assert not script.commands()
-
-    @pytest.mark.parametrize("wanted", [Disarm(), Disarm(force=True), ReturnHome()])
-    def test_nor_of_somebody_who_is_lost(self, wanted: Request) -> None:
-        script, request_id = flight(State.NO_VEHICLE)
-        assert script.refusal(script.ask(wanted)) is Code.NO_VEHICLE
-        assert not script.commands()
-        assert not script.ended(request_id)
+def net(flight: Flight) -> None:
+    """An exclusion zone over home, from 5 m to 8 m."""
+    script = flight.script
+    fence = verifier_for(script.policy, "px4", (0.0, 0.0, 0.0), None)
+    zone = Zone("net", False, Circle((0.0, 0.0), 4.0), 5.0, 8.0)
+    script.feed(VerifierChanged(replace(fence, zones=(*fence.zones, zone))))
 
 
-class TestOnTheGround:
-    def armed(self) -> Script:
-        script = Script(policy("default"))
-        lead_to(State.GROUNDED, script)
-        script.forget()
-        return script
+ROWS = rows(
+    """
+# In the air it holds at once and ends what was under way; the hold that is seen completes it.
+{AIRBORNE} | <hold, abort> | HOLDING OURS, sends HOLD, it aborted OPERATOR, <hold, abort> accepted
+           | shows HOLD | =, <hold, abort> complete
+           | wait 3 | =
+# A take-off that stands may come yet, so it is held and disarmed.
+climb | <hold, abort>
+      | GROUNDED NONE, sends HOLD DISARM, it aborted OPERATOR, <hold, abort> accepted
+      | wait 1.1 | =, sends HOLD
+# The hold of an abort that disarms completes nothing.
+climb | abort; shows HOLD | GROUNDED NONE, sends HOLD DISARM, it aborted OPERATOR, abort accepted
+      | shows disarmed | =, abort complete
+# Where the position is too old it holds and streams no more.
+stale {MOVING, FLYING_MISSION} | <hold, abort>
+      | STALE OURS, sends HOLD, it aborted OPERATOR, <hold, abort> accepted; silent
+      | positions; tick | HOLDING OURS
+# Abort of a vehicle that is not heard is sent until its time is over.
+NO_VEHICLE | abort    | NO_VEHICLE NONE, sends HOLD, it aborted OPERATOR, abort accepted
+           | wait 3   | =, sends HOLD HOLD HOLD
+           | wait 2.1 | =, sends HOLD HOLD, abort timed out NO_ANSWER
+# Nothing is asked of nobody, nor of somebody who is lost.
+unheard    | <hold, abort, land, disarm> | =, <hold, abort, land, disarm> refused NO_VEHICLE
+NO_VEHICLE | <disarm, force, return>     | =, <disarm, force, return> refused NO_VEHICLE
+# Hold is repeated at 1 Hz until the heartbeat shows it, and then no more.
+MOVING | hold; wait 2.5 | HOLDING OURS, sends HOLD HOLD HOLD, it aborted OPERATOR, hold accepted
+       | shows HOLD | =, hold complete | wait 3 | =
+# The held point is streamed where it was verified; what somebody else flew is held in silence.
+MOVING   | at 1 0 1.5; hold | HOLDING OURS, sends HOLD, it aborted OPERATOR, hold accepted
+         | wait 1 | =, sends HOLD; setpoints 1 0 1.5
+EXTERNAL | hold; wait 1 | HOLDING OURS, sends HOLD, it aborted OPERATOR, hold accepted complete;
+         ... setpoints none
+# It is commanded and takes the place of what was under way; held in its place until it is shown.
+{AIRBORNE, STALE -MOVING, -TAKING_PICTURE, -HOLDING}
+    | land | LANDING OURS, sends LAND, it superseded, land accepted; silent
+    | shows LAND | =; silent
+{MOVING, TAKING_PICTURE, HOLDING}
+    | land | LANDING OURS, sends LAND, it superseded, land accepted; streams
+    | shows LAND | =; silent
 
-    def complete(self, script: Script, wanted: Request) -> bool:
-        asked = script.ask(wanted)
-        assert script.verdict(asked).ruling is Ruling.ACCEPTED
-        return ended(script, asked) == "complete" and not script.commands()
+# Disarmed on the ground there is nothing left to do.
+connected | <disarm, force, abort, land, return>
+          | =, <disarm, force, abort, land, return> accepted complete
+# Armed it stands all the same.
+armed | <land, return, arm> | GROUNDED NONE, <land, return, arm> accepted complete
+# What is being armed is disarmed.
+GROUNDED | <disarm, force>
+         | GROUNDED NONE, sends DISARM, it superseded, <disarm, force> accepted
+GROUNDED | abort | GROUNDED NONE, sends DISARM, it aborted OPERATOR, abort accepted
+# A disarm is complete when the heartbeat shows it.
+armed | <disarm, force, abort> | =, sends DISARM, <disarm, force, abort> accepted
+      | accepts DISARM | = | shows disarmed | =, <disarm, force, abort> complete
+# A second arm while the first is under way is refused.
+GROUNDED | arm | =, arm refused BUSY
+# Armed and not known to stand it is asked to come down, and that is not complete at once.
+armed; no landed; wait 4 | <hold, abort, land, return>
+    | <HOLDING, HOLDING, LANDING, RETURNING> OURS, sends <HOLD, HOLD, LAND, RETURN>,
+    ... <hold, abort, land, return> accepted; awaits <HOLD, HOLD, LAND, RETURN>
+# So is what climbed, whatever was reported last.
+armed; wait 1; no landed; at 0 0 0.8 | hold | HOLDING OURS, sends HOLD, hold accepted
+# So is it held with a disarm under way.
+armed; no landed; wait 4; disarm | <hold, abort>
+    | HOLDING OURS, sends HOLD, disarm aborted OPERATOR, <hold, abort> accepted
+# Where a take-off was given up and may come yet, hold is commanded; abort also disarms.
+climb; refuses TAKE_OFF; disarm
+    | hold | GROUNDED NONE, sends HOLD, disarm aborted OPERATOR, hold accepted
+    | wait 1.1 | =, sends HOLD
+climb; refuses TAKE_OFF; disarm
+    | abort | GROUNDED NONE, sends HOLD DISARM, disarm aborted OPERATOR, abort accepted
+# A landing is commanded there.
+climb; refuses TAKE_OFF; disarm | land | LANDING OURS, sends LAND, disarm superseded, land accepted
+# A blocked return of what may fly is treated as in flight.
+rtl_blocked=<hold, land>: climb; refuses TAKE_OFF; disarm; return-height 80
+    | return | <HOLDING, LANDING> OURS, sends <HOLD, LAND>,
+    ... disarm aborted OPERATOR, return refused RTL_BLOCKED
+rtl_blocked=forward: climb; refuses TAKE_OFF; disarm; return-height 80
+    | return | RETURNING OURS, sends RETURN, disarm superseded, return accepted
+# In a climb whose landed state is lost, abort holds.
+climb 10; no landed; at 0 0 1 | abort
+    | HOLDING OURS, sends HOLD, it aborted OPERATOR, abort accepted
 
-    @pytest.mark.parametrize(
-        "wanted",
-        [Disarm(), Disarm(force=True), Abort(), Land(), ReturnHome()],
-    )
-    def test_disarmed_there_is_nothing_left_to_do(self, wanted: Request) -> None:
-        assert self.complete(Script(policy("default")).connect(), wanted)
+# Standing with an old position there is nothing left to do.
+armed; no positions; wait 1.2 | <land, return> | =, <land, return> accepted complete
+# It is disarmed.
+armed; no positions; wait 1.2 | <disarm, abort> | STALE NONE, sends DISARM, <disarm, abort> accepted
+    | shows disarmed | =, <disarm, abort> complete
+armed; no positions; wait 1.2; shows disarmed | <disarm, abort>
+    | =, <disarm, abort> accepted complete
+# A forced disarm on the ground is a disarm.
+armed; no positions; wait 1.2 | force | GROUNDED NONE, sends DISARM, force accepted
+    | shows disarmed | =, force complete
+# What is being armed is disarmed.
+stale GROUNDED | disarm | STALE NONE, sends DISARM, it superseded, disarm accepted
+stale GROUNDED | abort  | STALE NONE, sends DISARM, it aborted OPERATOR, abort accepted
+# A take-off that stands is held and disarmed by abort; disarm forgets it.
+climb; no positions; wait 1.2
+    | abort | STALE NONE, sends HOLD DISARM, it aborted OPERATOR, abort accepted
+    | positions; tick | GROUNDED NONE
+climb; no positions; wait 1.2
+    | disarm | STALE NONE, sends DISARM, it superseded, disarm accepted
+    | positions; tick | GROUNDED NONE
+# The hold of an abort that disarms completes nothing there either.
+climb; no positions; wait 1.2; abort
+    | shows HOLD; wait 1.5 | = | shows disarmed | =, abort complete
+# Hold is a hold there, a landing is commanded, and a return is blocked and held.
+climb; no positions; wait 1.2 | hold | STALE OURS, sends HOLD, it aborted OPERATOR, hold accepted
+climb; no positions; wait 1.2 | land | LANDING OURS, sends LAND, it superseded, land accepted
+climb; no positions; wait 1.2
+    | return | STALE OURS, sends HOLD, it aborted OPERATOR, return refused RTL_BLOCKED
 
-    @pytest.mark.parametrize("wanted", [Land(), ReturnHome(), Arm()])
-    def test_armed_it_stands_all_the_same(self, wanted: Request) -> None:
-        script = self.armed()
-        assert self.complete(script, wanted)
-        assert state_of(script) is State.GROUNDED
+# Disarmed by one message and in the air by another, with no position yet: it is not known to stand.
+unheard; shows disarmed; is IN_AIR | disarm | STALE NONE, disarm refused IN_AIR
+unheard; shows disarmed; is IN_AIR | abort  | STALE OURS, sends HOLD, abort accepted
 
-    @pytest.mark.parametrize(
-        ("wanted", "how"),
-        [
-            (Disarm(), "superseded SUPERSEDED"),
-            (Disarm(force=True), "superseded SUPERSEDED"),
-            (Abort(), "aborted OPERATOR"),
-        ],
-    )
-    def test_what_is_being_armed_is_disarmed(self, wanted: Request, how: str) -> None:
-        script, arm = flight(State.GROUNDED)
-        assert reaction(script, arm, lambda s: s.ask(wanted)) == Reaction(
-            State.GROUNDED, Control.NONE, [CommandKind.DISARM], how
-        )
+# A clear return is commanded; held in its place until it is shown.
+{AIRBORNE -MOVING, -TAKING_PICTURE, -HOLDING}
+    | return | RETURNING OURS, sends RETURN, it superseded, return accepted; silent
+    | shows RETURN | =; silent
+{MOVING, TAKING_PICTURE, HOLDING}
+    | return | RETURNING OURS, sends RETURN, it superseded, return accepted; streams
+    | shows RETURN | =; silent
+# It is complete on the ground, disarmed.
+MOVING | return; shows RETURN; is ON_GROUND
+    | GROUNDED NONE, sends RETURN, it superseded, return accepted
+       | shows disarmed | =, return complete
+# A blocked one holds at once, lands, or is forwarded, as the policy says; a landing goes on.
+{AIRBORNE -LANDING}; return-height 80
+    | return | HOLDING OURS, sends HOLD, it aborted OPERATOR, return refused RTL_BLOCKED;
+    ... says "'home'"; says "land instead"
+rtl_blocked=land: {AIRBORNE -LANDING}; return-height 80
+    | return | LANDING OURS, sends LAND, it aborted OPERATOR, return refused RTL_BLOCKED
+rtl_blocked=forward: {AIRBORNE}; return-height 80
+    | return | RETURNING OURS, sends RETURN, it superseded, return accepted
+rtl_blocked={hold, land}: LANDING; return-height 80 | return | =, return refused RTL_BLOCKED
+# With a position too old it is blocked and holds.
+stale {MOVING, FLYING_MISSION}
+    | return | STALE OURS, sends HOLD, it aborted OPERATOR, return refused RTL_BLOCKED; silent
+    | positions; tick | HOLDING OURS
+# The whole way home is judged, its descent too, and a severity finds it blocked as well.
+ours; net; return-height 10; goto 20 0 1.5; wait 0.1; at 20 0 1.5; wait 1
+    | return | HOLDING OURS, sends HOLD, return refused RTL_BLOCKED; says "the descent at home";
+    ... says "net"; says "land instead"
+ours; net; return-height 10; goto 20 0 1.5; wait 0.1; at 20 0 1.5; wait 1
+    | raised BATTERY_CRITICAL | HOLDING OURS, sends HOLD
 
-    @pytest.mark.parametrize("wanted", [Disarm(), Disarm(force=True), Abort()])
-    def test_a_disarm_is_complete_when_the_heartbeat_shows_it(self, wanted: Request) -> None:
-        script = self.armed()
-        asked = script.ask(wanted)
-        assert script.commands() == [CommandKind.DISARM]
-        script.answer(CommandKind.DISARM, 0)
-        assert not script.ended(asked)
-        script.heartbeat(armed=False)
-        assert ended(script, asked) == "complete"
+# In the air a disarm is refused, and a forced one where the policy does not allow it.
+{AIRBORNE, STALE} | disarm | =, disarm refused IN_AIR; same
+{AIRBORNE, STALE -EXTERNAL} | force | =, force refused POLICY; same | force
+    | =, force refused POLICY
+flown | force; force; force | =, force refused POLICY, force refused POLICY, force refused POLICY
+# Forced it needs the policy and a second request.
+allow_force_disarm=yes: {AIRBORNE -EXTERNAL}
+    | force | =, force refused IN_AIR
+    | force | EXTERNAL NONE, sends FORCE_DISARM, it superseded, force accepted; silent
+    | position | =
+    | shows disarmed | GROUNDED NONE, force complete
+allow_force_disarm=yes: STALE
+    | force | =, force refused IN_AIR
+    | force | EXTERNAL NONE, sends FORCE_DISARM, it superseded, force accepted; silent
+    | shows disarmed | =, force complete
+EXTERNAL; wait 6 | force | =, force refused IN_AIR
+    | force | =, sends FORCE_DISARM, force accepted | shows disarmed | GROUNDED NONE, force complete
+# Within five seconds, and not later; one without force is no first request.
+allow_force_disarm=yes: ours | force; tick 100 | =, force refused IN_AIR
+    | force | EXTERNAL NONE, sends FORCE_DISARM, force accepted
+allow_force_disarm=yes: ours | force; tick 101 | =, force refused IN_AIR
+    | force; wait 4.9 | =, force refused IN_AIR
+    | force | EXTERNAL NONE, sends FORCE_DISARM, force accepted
+allow_force_disarm=yes: ours | disarm; force | =, disarm refused IN_AIR, force refused IN_AIR
+# Without an operator no motor is stopped in the air.
+allow_force_disarm=yes: {AIRBORNE -EXTERNAL}; force; quits | force | =, force refused OPERATOR_LOST
+EXTERNAL; wait 6; force; quits | force | =, force refused OPERATOR_LOST
+# On the ground a take-off is disarmed, and without an operator all the same.
+climb | <disarm, force> | GROUNDED NONE, sends DISARM, it superseded, <disarm, force> accepted
+armed; quits | disarm; force | =, sends DISARM DISARM, disarm accepted superseded, force accepted
 
-    def test_a_second_arm_while_the_first_is_under_way_is_refused(self) -> None:
-        script, _ = flight(State.GROUNDED)
-        assert script.refusal(script.ask(Arm())) is Code.BUSY
-
-    def unknown(self) -> Script:
-        """Armed, and no report for long whether it stands."""
-        script = self.armed()
-        script.reports_landed = False
-        script.wait(4.0)
-        script.forget()
-        return script
-
-    @pytest.mark.parametrize(
-        ("wanted", "after", "command"),
-        [
-            (Hold(), State.HOLDING, CommandKind.HOLD),
-            (Abort(), State.HOLDING, CommandKind.HOLD),
-            (Land(), State.LANDING, CommandKind.LAND),
-            (ReturnHome(), State.RETURNING, CommandKind.RETURN),
-        ],
-    )
-    def test_armed_and_not_known_to_stand_it_is_asked_to_come_down(
-        self, wanted: Request, after: State, command: CommandKind
-    ) -> None:
-        script = self.unknown()
-        asked = script.ask(wanted)
-        assert reaction(script, asked, lambda s: None).ended == ""
-        assert (state_of(script), script.gate.control) == (after, Control.OURS)
-        script.forget()
-        assert script.gate.memory.outstanding == ((asked, command),)
-
-    @pytest.mark.parametrize("wanted", [Hold(), Abort()])
-    def test_so_it_is_held_with_a_disarm_under_way(self, wanted: Request) -> None:
-        script = self.unknown()
-        disarm = script.ask(Disarm())
-        assert reaction(script, disarm, lambda s: s.ask(wanted)) == Reaction(
-            State.HOLDING, Control.OURS, [CommandKind.HOLD], "aborted OPERATOR"
-        )
-
-    def late(self) -> tuple[Script, int]:
-        """A take-off was given up and may come yet; a disarm was asked for since."""
-        script = Script(policy("default"))
-        take_off(script)
-        script.answer(CommandKind.TAKE_OFF, 2)
-        assert state_of(script) is State.GROUNDED
-        return script, script.ask(Disarm())
-
-    def test_hold_is_commanded_where_a_take_off_may_come_yet(self) -> None:
-        script, disarm = self.late()
-        assert reaction(script, disarm, lambda s: s.ask(Hold())) == Reaction(
-            State.GROUNDED, Control.NONE, [CommandKind.HOLD], "aborted OPERATOR"
-        )
-        assert reaction(script, script._next_id, lambda s: s.wait(1.1)).sent == [CommandKind.HOLD]
-
-    def test_abort_holds_and_disarms_there(self) -> None:
-        script, disarm = self.late()
-        assert reaction(script, disarm, lambda s: s.ask(Abort())) == Reaction(
-            State.GROUNDED,
-            Control.NONE,
-            [CommandKind.HOLD, CommandKind.DISARM],
-            "aborted OPERATOR",
-        )
-
-    def test_landing_is_commanded_where_a_take_off_may_come_yet(self) -> None:
-        script, disarm = self.late()
-        assert reaction(script, disarm, lambda s: s.ask(Land())) == Reaction(
-            State.LANDING, Control.OURS, [CommandKind.LAND], "superseded SUPERSEDED"
-        )
-
-    @pytest.mark.parametrize(
-        ("blocked", "after", "sent"),
-        [
-            ("hold", State.HOLDING, [CommandKind.HOLD]),
-            ("land", State.LANDING, [CommandKind.LAND]),
-            ("forward", State.RETURNING, [CommandKind.RETURN]),
-        ],
-    )
-    def test_a_blocked_return_of_what_may_fly_is_treated_as_in_flight(
-        self, blocked: str, after: State, sent: list[CommandKind]
-    ) -> None:
-        script = Script(default_policy(rtl_blocked=blocked))
-        take_off(script)
-        script.answer(CommandKind.TAKE_OFF, 2)
-        disarm = script.ask(Disarm())
-        script.feed(ReturnHeightSeen(80.0))
-        how = "superseded SUPERSEDED" if blocked == "forward" else "aborted OPERATOR"
-        assert reaction(script, disarm, lambda s: s.ask(ReturnHome())) == Reaction(
-            after, Control.OURS, sent, how
-        )
-        ruling = script.verdict(script._next_id).ruling
-        assert ruling is (Ruling.ACCEPTED if blocked == "forward" else Ruling.REFUSED)
-
-
-class TestStandingWithAnOldPosition:
-    def script(self) -> Script:
-        """Armed on the ground, and the position has become too old."""
-        script = Script(policy("default"))
-        lead_to(State.GROUNDED, script)
-        script.reports_position = False
-        script.wait(1.2)
-        assert state_of(script) is State.STALE
-        script.forget()
-        return script
-
-    @pytest.mark.parametrize("wanted", [Land(), ReturnHome()])
-    def test_there_is_nothing_left_to_do(self, wanted: Request) -> None:
-        script = self.script()
-        asked = script.ask(wanted)
-        assert ended(script, asked) == "complete"
-        assert not script.commands()
-
-    @pytest.mark.parametrize("wanted", [Disarm(), Abort()])
-    def test_it_is_disarmed(self, wanted: Request) -> None:
-        script = self.script()
-        asked = script.ask(wanted)
-        assert reaction(script, asked, lambda s: None) == Reaction(
-            State.STALE, Control.NONE, [], ""
-        )
-        assert script.gate.memory.outstanding == ((asked, CommandKind.DISARM),)
-        script.heartbeat(armed=False)
-        assert ended(script, asked) == "complete"
-
-    @pytest.mark.parametrize("wanted", [Disarm(), Abort()])
-    def test_disarmed_there_is_nothing_left_to_do(self, wanted: Request) -> None:
-        script = self.script()
-        script.heartbeat(armed=False)
-        asked = script.ask(wanted)
-        assert ended(script, asked) == "complete"
-        assert not script.commands()
-
-    def test_a_forced_disarm_on_the_ground_is_a_disarm(self) -> None:
-        script = self.script()
-        asked = script.ask(Disarm(force=True))
-        assert script.commands() == [CommandKind.DISARM]
-        assert state_of(script) is State.GROUNDED
-        script.heartbeat(armed=False)
-        assert ended(script, asked) == "complete"
-
-    def arming(self) -> tuple[Script, int]:
-        """As above, and arming is under way."""
-        script, arm = flight(State.GROUNDED)
-        script.reports_position = False
-        script.wait(1.2)
-        assert state_of(script) is State.STALE
-        return script, arm
-
-    @pytest.mark.parametrize(
-        ("wanted", "how"), [(Disarm(), "superseded SUPERSEDED"), (Abort(), "aborted OPERATOR")]
-    )
-    def test_what_is_being_armed_is_disarmed(self, wanted: Request, how: str) -> None:
-        script, arm = self.arming()
-        assert reaction(script, arm, lambda s: s.ask(wanted)) == Reaction(
-            State.STALE, Control.NONE, [CommandKind.DISARM], how
-        )
-
-    def taking_off(self) -> tuple[Script, int]:
-        """A take-off that stands, with a position too old."""
-        script = Script(policy("default"))
-        request_id = take_off(script)
-        script.reports_position = False
-        script.wait(1.2)
-        assert state_of(script) is State.STALE
-        return script, request_id
-
-    def test_abort_of_a_take_off_that_stands_holds_and_disarms(self) -> None:
-        script, request_id = self.taking_off()
-        assert reaction(script, request_id, lambda s: s.ask(Abort())) == Reaction(
-            State.STALE,
-            Control.NONE,
-            [CommandKind.HOLD, CommandKind.DISARM],
-            "aborted OPERATOR",
-        )
-        script.reports_position = True
-        script.tick()
-        assert state_of(script) is State.GROUNDED
-
-    def test_disarm_forgets_the_take_off(self) -> None:
-        script, request_id = self.taking_off()
-        assert reaction(script, request_id, lambda s: s.ask(Disarm())) == Reaction(
-            State.STALE, Control.NONE, [CommandKind.DISARM], "superseded SUPERSEDED"
-        )
-        script.reports_position = True
-        script.tick()
-        assert state_of(script) is State.GROUNDED
-
-    def test_the_hold_of_an_abort_that_disarms_completes_nothing(self) -> None:
-        script, _ = self.taking_off()
-        abort = script.ask(Abort())
-        script.heartbeat(FlightMode.HOLD)
-        assert not script.ended(abort)
-        assert reaction(script, abort, lambda s: s.wait(1.5)).sent == []
-        script.heartbeat(armed=False)
-        assert ended(script, abort) == "complete"
-
-    def test_hold_of_a_take_off_that_stands_is_a_hold(self) -> None:
-        script, request_id = self.taking_off()
-        assert reaction(script, request_id, lambda s: s.ask(Hold())) == Reaction(
-            State.STALE, Control.OURS, [CommandKind.HOLD], "aborted OPERATOR"
-        )
-
-    def test_landing_of_a_take_off_that_stands_is_commanded(self) -> None:
-        script, request_id = self.taking_off()
-        assert reaction(script, request_id, lambda s: s.ask(Land())) == Reaction(
-            State.LANDING, Control.OURS, [CommandKind.LAND], "superseded SUPERSEDED"
-        )
-
-    def test_a_return_of_a_take_off_that_stands_is_blocked_and_held(self) -> None:
-        script, request_id = self.taking_off()
-        assert reaction(script, request_id, lambda s: s.ask(ReturnHome())) == Reaction(
-            State.STALE, Control.OURS, [CommandKind.HOLD], "aborted OPERATOR"
-        )
-        assert script.refusal(script._next_id) is Code.RTL_BLOCKED
+# A refused hold ends its request, and the hold goes on being commanded at 1 Hz.
+EXTERNAL; {hold, abort} | refuses HOLD | HOLDING OURS, {hold, abort} aborted VEHICLE_REFUSED
+{MOVING, stale MOVING}; {hold, abort}
+    | refuses HOLD not now | =, {hold, abort} aborted VEHICLE_REFUSED;
+    ... says "the vehicle refused hold mode (DENIED): not now"
+    | wait 1.1 | =, sends HOLD | refuses HOLD; wait 1.1 | =, sends HOLD
+    | shows HOLD; shows HOLD; wait 5 | =
+# It ends on the ground where a take-off may come late, and where the vehicle is not heard any more.
+in TAKING_OFF; ignores TAKE_OFF; hold | refuses HOLD not now
+    | GROUNDED NONE, hold aborted VEHICLE_REFUSED
+NO_VEHICLE; abort | refuses HOLD not now | =, abort aborted VEHICLE_REFUSED
+# The gate's own hold is commanded at 1 Hz whatever the answer, until it is seen.
+MOVING | quits | HOLDING OURS, sends HOLD, it aborted OPERATOR_LOST
+       | refuses HOLD; wait 1 | =, sends HOLD | refuses HOLD; wait 1 | =, sends HOLD
+       | shows HOLD; wait 3 | =
+# Only resume leads back to hovering, and the goal is gone.
+in HOLDING | goto 3 0 1.5; control | =, goto refused HOLDING, control refused HOLDING
+    | resume; wait 1.1; shows GUIDED | HOVERING OURS, sends GUIDED, resume accepted complete;
+    ... holds 0 0 1.5
+# Our own guided that comes after the hold is held again.
+in HOLDING; resume; wait 1.1; abort; shows HOLD
+    | shows GUIDED | HOLDING OURS, sends HOLD
+# After a refused disarm of what is not known to stand it is held.
+armed; no landed; wait 4; disarm
+    | fails DISARM | HOLDING OURS, sends HOLD, disarm aborted VEHICLE_REFUSED
+# A hold after a take-off that nobody answered is commanded.
+climb; shows HOLD
+    | ignores TAKE_OFF | GROUNDED NONE, sends HOLD DISARM, it timed out NO_ANSWER
+    | hold | =, sends HOLD, hold accepted
+""",
+    net,
+)  # fmt: skip
 
 
-class TestDisarmedInTheAir:
-    """Reported in the air by one message and disarmed by another, with no position yet."""
-
-    def script(self) -> Script:
-        script = Script(policy("default"))
-        script.heartbeat(armed=False)
-        script.land_state(LandedState.IN_AIR)
-        assert state_of(script) is State.STALE
-        return script
-
-    def test_it_is_not_known_to_stand_so_it_is_not_disarmed(self) -> None:
-        script = self.script()
-        assert script.refusal(script.ask(Disarm())) is Code.IN_AIR
-
-    def test_abort_commands_hold(self) -> None:
-        script = self.script()
-        abort = script.ask(Abort())
-        assert script.commands() == [CommandKind.HOLD]
-        assert not script.ended(abort)
-
-
-class TestLand:
-    @pytest.mark.parametrize("state", [*AIRBORNE, State.STALE])
-    def test_it_is_commanded_and_takes_the_place_of_what_was_under_way(self, state: State) -> None:
-        script, request_id = flight(state)
-        followed = follows_setpoints(script)
-        assert reaction(script, request_id, lambda s: s.ask(Land())) == Reaction(
-            State.LANDING, Control.OURS, [CommandKind.LAND], "superseded SUPERSEDED"
-        )
-        assert streams(script) is followed, "held in its place until it shows the mode"
-        script.heartbeat(FlightMode.LAND)
-        assert not streams(script)
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_what_stops_it(row: Row) -> None:
+    row.fly()

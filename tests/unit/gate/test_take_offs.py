@@ -1,247 +1,169 @@
-"""A take-off: what is commanded, how far up it is, and whether it has left the ground."""
+"""A take-off: what is commanded, how far up it is, whether it has left the ground, where it ends.
+
+PX4's own tolerance of the end of a climb is 0.8 m, the policy's arrival radius 0.5 m.
+"""
 
 from __future__ import annotations
 
-from typing import Literal
-
 import pytest
 
-from gcs.gate.effects import CommandKind, Ruling, SendCommand, Verdict
+from gcs.gate.effects import SendCommand
 from gcs.gate.machine.memory import Memory
-from gcs.gate.refusal import Code
-from gcs.gate.requests import Hold, Land, TakeOff
-from gcs.gate.states import Control, FlightMode, LandedState, State
-from tests.unit.gate.reactions import (
-    HELD,
-    Reaction,
-    default_policy,
-    elsewhere,
-    ended,
-    reaction,
-    remember,
-    state_of,
-    take_off,
-)
-from tests.unit.gate.script import SECOND, Script, policy
+from tests.unit.gate.reactions import elsewhere, remember
+from tests.unit.gate.rows import Flight, Row, place, rows
 
 
-class TestCommandAndHeight:
-    def test_the_command_that_waited_for_its_mode_has_the_height(self) -> None:
-        script = Script(policy("default"), "ardupilot").connect()
-        script.heartbeat(FlightMode.HOLD, armed=True)
-        request_id = script.ask(TakeOff(3.0))
-        script.heartbeat(FlightMode.GUIDED)
-        sent = script.all(SendCommand)
-        assert [s.kind for s in sent] == [CommandKind.GUIDED, CommandKind.TAKE_OFF]
-        assert (sent[-1].request_id, sent[-1].up_m) == (request_id, 3.0)
-
-    def test_the_ground_is_as_far_down_as_where_it_stands(self) -> None:
-        """Ten metres east of home, on the ground: it stands, and an abort disarms it."""
-        script = Script(policy("default"))
-        script.pos_ned = (0.0, 10.0, 0.0)
-        take_off(script)
-        script.ask(Hold())
-        assert script.gate.state is State.GROUNDED
-        assert script.commands()[-2:] == [CommandKind.HOLD, CommandKind.DISARM]
-
-    @pytest.mark.parametrize("up", [5.5, 5.75, 5.9375])
-    def test_a_climb_that_ended_less_than_a_metre_above_is_told_as_above(self, up: float) -> None:
-        script = Script(policy("default"))
-        request_id = take_off(script, 5.0)
-        script.land_state(LandedState.TAKEOFF)
-        script.v_ned = (0.0, 0.0, -1.0)
-        script.at(0.0, 0.0, up, (0.0, 0.0, 1.0))
-        script.land_state(LandedState.IN_AIR)
-        script.v_ned = (0.0, 0.0, 0.0)
-        script.heartbeat(FlightMode.HOLD)
-        script.tick()
-        assert "m above the height asked for" in script.outcome(request_id).sentence
+def climbed_to(flight: Flight, up: str, mode: str) -> None:
+    """The vehicle ends its climb so high, two metres off its place, and shows `mode`."""
+    flight.do(f"is TAKEOFF; at 2 0 {up} by 0 0 1; is IN_AIR; flies 0 0 0; shows {mode}; tick")
 
 
-class TestTheEndOfTheClimb:
-    """PX4's own tolerance is 0.8 m, the policy's arrival radius 0.5 m."""
-
-    def climbed(self, up: float, autopilot: str = "px4") -> tuple[Script, int]:
-        """A take-off to 5 m that the vehicle ends `up` metres high, two metres off its place."""
-        script = Script(policy("default"), autopilot)
-        request_id = take_off(script, 5.0)
-        script.land_state(LandedState.TAKEOFF)
-        script.at(2.0, 0.0, up, (0.0, 0.0, 1.0))
-        script.land_state(LandedState.IN_AIR)
-        script.v_ned = (0.0, 0.0, 0.0)
-        script.heartbeat(FlightMode.HOLD if autopilot == "px4" else FlightMode.GUIDED)
-        script.tick()
-        return script, request_id
-
-    def gained(self, script: Script) -> None:
-        script.wait(1.1)
-        script.heartbeat(FlightMode.GUIDED)
-
-    @pytest.mark.parametrize("up", [3.75, 4.25, 4.75, 5.25])
-    def test_the_top_that_was_verified_is_streamed_and_flown_to(self, up: float) -> None:
-        script, request_id = self.climbed(up)
-        assert script.gate.hold_goal_ned == (0.0, 0.0, -5.0)
-        self.gained(script)
-        assert {place for _, place in script.setpoints()} == {(0.0, 0.0, 5.0)}
-        assert (state_of(script), ended(script, request_id)) == (State.MOVING, "")
-        script.at(0.0, 0.0, 5.0)
-        script.wait(1.0)
-        assert (state_of(script), ended(script, request_id)) == (State.HOVERING, "complete")
-        assert script.gate.hold_goal_ned == (0.0, 0.0, -5.0)
-
-    @pytest.mark.parametrize(("up", "autopilot"), [(3.5, "px4"), (4.25, "ardupilot")])
-    def test_a_climb_that_ended_further_below_is_not_over(self, up: float, autopilot: str) -> None:
-        script, _ = self.climbed(up, autopilot)
-        assert state_of(script) is not State.HOVERING
-
-    def test_of_a_vehicle_that_told_no_tolerance_the_radius_counts(self) -> None:
-        script = Script(policy("default"))
-        take_off(script, 5.0)
-        remember(script, climb_ends_within_m=Memory("px4").climb_ends_within_m)
-        script.land_state(LandedState.IN_AIR)
-        script.at(0.0, 0.0, 4.25)
-        script.heartbeat(FlightMode.HOLD)
-        script.tick()
-        assert state_of(script) is State.HOLDING
-
-    def test_a_vehicle_that_does_not_show_the_end_climbs_on(self) -> None:
-        script, _ = self.climbed(3.5)
-        remember(script, state=State.TAKING_OFF, mode=FlightMode.TAKEOFF)
-        script.mode = FlightMode.TAKEOFF
-        script.at(0.0, 0.0, 4.25)
-        script.wait(0.2)
-        assert state_of(script) is State.TAKING_OFF
-
-    @pytest.mark.parametrize(("up", "how"), [(4.625, ""), (4.6875, "complete"), (5.375, "")])
-    def test_it_is_complete_nearer_to_its_height_than_the_arrival_radius(
-        self, up: float, how: str
-    ) -> None:
-        """That is half a metre; a PX4 may rest 0.28 m beside its height."""
-        script, request_id = self.climbed(4.25)
-        self.gained(script)
-        script.at(0.0, 0.0, up)
-        script.wait(1.0)
-        assert ended(script, request_id) == how
-
-    def test_the_rest_has_the_deadline_of_a_goal(self) -> None:
-        script, request_id = self.climbed(4.25)
-        self.gained(script)
-        script.wait(script.policy.deadline_min_s + 0.1)
-        assert state_of(script) is State.HOLDING
-        assert ended(script, request_id) == "timed out DEADLINE"
-
-    def test_a_top_that_clears_no_more_is_not_flown_to(self) -> None:
-        script, request_id = self.climbed(4.25)
-        script.wait(1.1)
-        remember(script, verifier=elsewhere(script))
-        assert reaction(script, request_id, lambda s: s.heartbeat(FlightMode.GUIDED)) == Reaction(
-            *HELD, "aborted OUTSIDE_FENCE"
-        )
-
-    def test_guided_mode_that_is_shown_while_the_position_is_too_old_waits_for_a_fresh_one(
-        self,
-    ) -> None:
-        script, request_id = self.climbed(4.25)
-        script.wait(1.1)
-        script.now_ns += round(1.1 * SECOND)
-        script.heartbeat(FlightMode.GUIDED)
-        assert (state_of(script), script.gate.control) == (State.HOVERING, Control.TAKING)
-        script.position()
-        script.heartbeat(FlightMode.GUIDED)
-        assert (state_of(script), ended(script, request_id)) == (State.MOVING, "")
-
-    def test_a_goal_that_comes_while_control_is_taken_waits_for_the_mode(self) -> None:
-        """MAVSDK's examples send one five seconds after the take-off, wherever that is."""
-        script, request_id = self.climbed(4.25)
-        goal = script.goto(3.0, 0.0, 5.0)
-        script.wait(1.1)
-        assert goal not in {verdict.request_id for verdict in script.all(Verdict)}
-        assert {place for _, place in script.setpoints()} == {(0.0, 0.0, 5.0)}
-        script.heartbeat(FlightMode.GUIDED)
-        script.tick()
-        assert script.verdict(goal).ruling is Ruling.ACCEPTED
-        assert script.gate.active_goal_ned == (0.0, 3.0, -5.0)
-        assert ended(script, request_id) == "superseded SUPERSEDED"
-
-    @pytest.mark.parametrize(
-        ("retarget", "up", "refused"),
-        [
-            ("replace", 9.0625, None),
-            ("replace", 8.9375, Code.BUSY),  # not in the last tenth of the climb
-            ("refuse", 9.5, Code.BUSY),
-        ],
-    )
-    def test_a_goal_in_the_last_tenth_of_the_climb_waits_for_its_end(
-        self, retarget: Literal["replace", "refuse"], up: float, refused: Code | None
-    ) -> None:
-        """DroneKit's scripts send one at 95 % of the height, once."""
-        script = Script(default_policy(retarget=retarget), "ardupilot")
-        request_id = take_off(script, 10.0)
-        script.land_state(LandedState.IN_AIR)
-        script.at(0.0, 0.0, up, (0.0, 0.0, 1.0))
-        goal = script.goto(3.0, 0.0, 10.0)
-        script.tick()
-        told = {v.request_id: v.refusal and v.refusal.code for v in script.all(Verdict)}
-        assert told.get(goal) is refused
-        assert state_of(script) is State.TAKING_OFF
-        script.at(0.0, 0.0, 10.0)
-        script.v_ned = (0.0, 0.0, 0.0)
-        script.wait(1.1)
-        script.heartbeat(FlightMode.GUIDED)
-        script.tick()
-        flown_ned = None if refused else (0.0, 3.0, -10.0)
-        assert (script.gate.active_goal_ned == flown_ned) is (refused is None)
-        assert (ended(script, request_id) == "superseded SUPERSEDED") is (refused is None)
-
-    def test_it_is_refused_where_a_pilot_brakes_near_the_top(self) -> None:
-        script = Script(default_policy(retarget="replace"), "ardupilot")
-        take_off(script, 10.0)
-        script.land_state(LandedState.IN_AIR)
-        script.at(0.0, 0.0, 9.5, (0.0, 0.0, 1.0))
-        goal = script.goto(3.0, 0.0, 10.0)
-        script.v_ned = (0.0, 0.0, 0.0)
-        script.at(0.0, 0.0, 9.6)
-        script.heartbeat(FlightMode.HOLD)
-        script.wait(0.2)
-        assert script.refusal(goal) is Code.MODE_CHANGED
-
-    def test_it_is_refused_where_the_climb_is_stopped(self) -> None:
-        script = Script(default_policy(retarget="replace"), "ardupilot")
-        take_off(script, 10.0)
-        script.land_state(LandedState.IN_AIR)
-        script.at(0.0, 0.0, 9.5, (0.0, 0.0, 1.0))
-        goal = script.goto(3.0, 0.0, 10.0)
-        script.ask(Hold())
-        assert script.verdict(goal).ruling is Ruling.SUPERSEDED
-        assert state_of(script) is State.HOLDING
-
-    def test_it_is_refused_where_control_is_not_had_in_time(self) -> None:
-        script, _ = self.climbed(4.25)
-        goal = script.goto(3.0, 0.0, 5.0)
-        script.wait(1.0 + script.policy.control.timeout_s + 0.1)
-        assert script.refusal(goal) is Code.NO_ANSWER
+def told_no_tolerance(flight: Flight) -> None:
+    remember(flight.script, climb_ends_within_m=Memory("px4").climb_ends_within_m)
 
 
-class TestWhetherItStands:
-    def test_a_climb_that_is_still_reported_to_stand_is_not_disarmed(self) -> None:
-        """Its landed state lags for longer than our take-off may come late."""
-        script = Script(policy("default"))
-        request_id = take_off(script, 5.0)
-        script.at(0.0, 0.0, 3.0, (0.0, 0.0, 1.0))
-        script.wait(11.0)
-        assert state_of(script) is State.TAKING_OFF
-        assert reaction(script, request_id, lambda s: s.ask(Hold())) == Reaction(
-            *HELD, "aborted OPERATOR"
-        )
+def clears_no_more(flight: Flight) -> None:
+    remember(flight.script, verifier=elsewhere(flight.script))
 
-    def test_a_take_off_comes_late_until_its_time_and_not_at_it(self) -> None:
-        """From then on what is reported to stand is believed to, wherever it is."""
-        script = Script(policy("default")).connect()
-        script.heartbeat(armed=True)
-        script.land_state(LandedState.ON_GROUND)
-        script.pos_ned = (0.0, 0.0, -1.0)
-        script.tick()
-        remember(script, takeoff_until_ns=script.now_ns)
-        script.land_state(LandedState.ON_GROUND)
-        assert ended(script, script.ask(Land())) == "complete"
-        assert script.commands() == []
+
+def may_come_until_now(flight: Flight) -> None:
+    remember(flight.script, takeoff_until_ns=flight.script.now_ns)
+
+
+def known_to_be_at(flight: Flight, *enu: str) -> None:
+    remember(flight.script, pos_ned=place(*enu))
+
+
+def sends_up(flight: Flight, up: str) -> None:
+    sent = flight.script.all(SendCommand)[-1]
+    assert (sent.request_id, sent.up_m) == (flight.script.asked, float(up))
+
+
+ROWS = rows(
+    """
+# The command has the height, also where it waited for its mode.
+armed | take-off 7; sends-up 7 | TAKING_OFF OURS, sends TAKE_OFF, take-off accepted
+ardupilot: connected; shows HOLD armed
+    | take-off 3; shows GUIDED; sends-up 3
+    | TAKING_OFF OURS, sends GUIDED TAKE_OFF, take-off accepted
+# Not armed, no take-off.
+connected | up | =, up refused NOT_ARMED
+# The ground is as far down as where it stands: ten metres east of home it is disarmed by a stop.
+stands-at 10 0 0; climb | hold
+    | GROUNDED NONE, sends HOLD DISARM, it aborted OPERATOR, hold accepted
+# A climb counts from where it stands.
+{px4, ardupilot, somebody}: stands-at 4 3 7; connected; shows GUIDED armed
+    | take-off 5 | TAKING_OFF OURS, sends TAKE_OFF, take-off accepted; top 4 3 12
+
+# It ends hovering under confirmed control: taken, shown, and arrived.
+armed; up; shows TAKEOFF; is TAKEOFF; at 0 0 1 by 0 0 1; is IN_AIR | tick | =; setpoints none
+    | at 0 0 2; shows HOLD; tick | HOVERING TAKING
+    | wait 1.1; shows GUIDED | MOVING OURS, sends GUIDED
+    | wait 0.5 | HOVERING OURS, up complete
+# The hold mode of an old heartbeat is not the end of the climb.
+armed; up; is IN_AIR; at 0 0 0.3 by 0 0 1 | shows HOLD; wait 0.5 | TAKING_OFF OURS
+# A climb to 5 m is over nearer than 0.5 m and slower than 0.3 m/s, and then control is taken.
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 <4.5, 5.5, 5> by 0 0 <0, 0, 0.3>; is IN_AIR
+    | tick | TAKING_OFF OURS
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 <4.5625, 5.4375, 5> by 0 0 <0, 0, 0.25>; is IN_AIR
+    | tick | HOVERING TAKING
+ardupilot: climb 5; is TAKEOFF; flies 0 0 1; at 0 0 5 by 0 0 0; is IN_AIR | tick | HOVERING TAKING
+# PX4 says by its hold mode that it is up, and may have passed through take-off to it unseen.
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 5 by 0 0 1; is IN_AIR
+    | tick | TAKING_OFF OURS | shows HOLD; tick | HOVERING TAKING
+armed; take-off 1.5 | wait 5.2 | TAKING_OFF OURS
+    | is IN_AIR; flies 0 0 1; at 0 0 1.5 by 0 0 1; tick | HOVERING TAKING
+# Far below and slow the climb ended there; in take-off mode it climbs on.
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 3 by 0 0 0; is IN_AIR; shows HOLD
+    | tick | HOLDING OURS, sends HOLD, it aborted VEHICLE_REFUSED; says "2.0 m below the height";
+    ... holds 0 0 3
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 3 by 0 0 0; is IN_AIR | wait 1 | TAKING_OFF OURS
+# While it still climbs the hold mode is waited out.
+climb 10; is IN_AIR; at 0 0 9 by 0 0 0.8
+    | shows HOLD; tick | TAKING_OFF OURS | at 0 0 9.8; tick | HOVERING TAKING
+# Above and slow the climb ended there; less than a metre above is told as above, too.
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 6 by 0 0 0; is IN_AIR; shows HOLD
+    | tick | HOLDING OURS, sends HOLD, it aborted VEHICLE_REFUSED; says "1.0 m above the height"
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 {5.5, 5.75, 5.9375} by 0 0 1; is IN_AIR; flies 0 0 0
+    | shows HOLD; tick | HOLDING OURS, sends HOLD, it aborted VEHICLE_REFUSED;
+    ... says "m above the height asked for"
+# A metre above the arrival radius is too high.
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 6.5 by 0 0 1; is IN_AIR | tick | TAKING_OFF OURS
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 6.5625 by 0 0 1; is IN_AIR
+    | tick | HOLDING OURS, sends HOLD, it aborted TOO_HIGH
+# At the top and not allowed to hover it is held.
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 5 by 0 0 0; is IN_AIR; known-to-be-at 170 0 5
+    | bare-tick | HOLDING OURS, sends HOLD, it aborted TOO_CLOSE
+# What is not known to fly has not climbed.
+climb 5; is TAKEOFF; flies 0 0 1; at 0 0 5 by 0 0 0; remembers landed=UNDEFINED | tick
+    | TAKING_OFF OURS
+
+# The top that was verified is streamed and flown to.
+climb 5; climbed-to {3.75, 4.25, 4.75, 5.25} HOLD
+    | nothing | =; holds 0 0 5
+    | wait 1.1; shows GUIDED | MOVING OURS, sends GUIDED; setpoints 0 0 5
+    | at 0 0 5; wait 1 | HOVERING OURS, it complete; holds 0 0 5
+# A climb that ended further below is not over; of one that told no tolerance the radius counts.
+climb 5 | climbed-to 3.5 HOLD | HOLDING OURS, sends HOLD, it aborted VEHICLE_REFUSED
+ardupilot: climb 5 | climbed-to 4.25 GUIDED | TAKING_OFF OURS
+climb 5; told-no-tolerance; is IN_AIR; at 0 0 4.25
+    | shows HOLD; tick | HOLDING OURS, sends HOLD, it aborted VEHICLE_REFUSED
+# A vehicle that does not show the end climbs on.
+climb 5; climbed-to 3.5 HOLD; remembers state=TAKING_OFF mode=TAKEOFF; shows TAKEOFF; at 0 0 4.25
+    | wait 0.2 | TAKING_OFF OURS
+# It is complete nearer to its height than the arrival radius: a PX4 may rest 0.28 m beside it.
+climb 5; climbed-to 4.25 HOLD; wait 1.1; shows GUIDED; at 0 0 {4.625, 5.375} | wait 1 | MOVING OURS
+climb 5; climbed-to 4.25 HOLD; wait 1.1; shows GUIDED; at 0 0 4.6875
+    | wait 1 | HOVERING OURS, it complete
+# The rest has the deadline of a goal.
+climb 5; climbed-to 4.25 HOLD; wait 1.1; shows GUIDED
+    | wait 20.1 | HOLDING OURS, sends HOLD, it timed out DEADLINE
+# A top that clears no more is not flown to.
+climb 5; climbed-to 4.25 HOLD; wait 1.1; clears-no-more
+    | shows GUIDED | HOLDING OURS, sends HOLD, it aborted OUTSIDE_FENCE
+# Guided mode that is shown while the position is too old waits for a fresh one.
+climb 5; climbed-to 4.25 HOLD; wait 1.1
+    | later 1.1; shows GUIDED | HOVERING TAKING | position; shows GUIDED | MOVING OURS
+# A goal that comes while control is taken waits for the mode (MAVSDK's examples send one).
+climb 5; climbed-to 4.25 HOLD
+    | goto 3 0 5; wait 1.1 | HOVERING TAKING, sends GUIDED; setpoints 0 0 5
+    | shows GUIDED; tick | MOVING OURS, it superseded, goto accepted; goal 3 0 5
+climb 5; climbed-to 4.25 HOLD; goto 3 0 5
+    | wait 6.1 | EXTERNAL NONE, sends GUIDED HOLD, it timed out NO_ANSWER, goto refused NO_ANSWER
+# One in the last tenth of the climb waits for its end (DroneKit's scripts send one at 95 %, once).
+retarget=replace, ardupilot: climb 10; is IN_AIR; at 0 0 9.0625 by 0 0 1
+    | goto 3 0 10; tick | TAKING_OFF OURS
+    | at 0 0 10; flies 0 0 0; wait 1.1; shows GUIDED; tick
+    | MOVING OURS, sends GUIDED, it superseded, goto accepted; goal 3 0 10
+retarget=replace, ardupilot: climb 10; is IN_AIR; at 0 0 8.9375 by 0 0 1
+    | goto 3 0 10; tick | TAKING_OFF OURS, goto refused BUSY
+    | at 0 0 10; flies 0 0 0; wait 1.1; shows GUIDED; tick
+    | HOVERING OURS, sends GUIDED, it complete; goal 0 0 10
+retarget=refuse, ardupilot: climb 10; is IN_AIR; at 0 0 9.5 by 0 0 1
+    | goto 3 0 10; tick | TAKING_OFF OURS, goto refused BUSY
+# It is refused where a pilot brakes near the top, and where the climb is stopped.
+retarget=replace, ardupilot: climb 10; is IN_AIR; at 0 0 9.5 by 0 0 1; goto 3 0 10
+    | flies 0 0 0; at 0 0 9.6; shows HOLD; wait 0.2
+    | HOVERING TAKING, sends GUIDED, goto refused MODE_CHANGED
+retarget=replace, ardupilot: climb 10; is IN_AIR; at 0 0 9.5 by 0 0 1; goto 3 0 10
+    | hold | HOLDING OURS, sends HOLD, it aborted OPERATOR, goto replaced, hold accepted
+
+# A climb that is still reported to stand is not disarmed: its landed state lags.
+climb 5; at 0 0 3 by 0 0 1 | wait 11 | TAKING_OFF OURS
+    | hold | HOLDING OURS, sends HOLD, it aborted OPERATOR, hold accepted
+# A take-off comes late until its time and not at it: then what is reported to stand is believed to.
+connected; shows armed; is ON_GROUND; stands-at 0 0 1; tick; may-come-until-now; is ON_GROUND
+    | land | GROUNDED NONE, land accepted complete
+""",
+    climbed_to,
+    told_no_tolerance,
+    clears_no_more,
+    may_come_until_now,
+    known_to_be_at,
+    sends_up,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_how_it_takes_off(row: Row) -> None:
+    row.fly()

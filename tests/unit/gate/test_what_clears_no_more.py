@@ -2,223 +2,174 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from gcs.frames import ned_from_enu
-from gcs.gate.effects import CommandKind, Say, SendSetpoint
-from gcs.gate.inputs import (
-    HeartbeatSeen,
-    HomeSeen,
-    LandedSeen,
-    PositionSeen,
-    VerifierChanged,
-)
-from gcs.gate.states import Control, FlightMode, State
-from tests.unit.gate.reactions import (
-    FLIGHT,
-    HEARD,
-    HELD,
-    STILL,
-    VERIFIED,
-    Reaction,
-    elsewhere,
-    ended,
-    flight,
-    reaction,
-    remember,
-    sample,
-    stale,
-    state_of,
-    streams,
-    take_off,
-)
+from gcs.gate.airspace.verifier import verifier_for
+from gcs.gate.airspace.zones import Zone
+from gcs.gate.effects import CommandKind, SendSetpoint
+from gcs.gate.geometry import Circle
+from gcs.gate.inputs import HeartbeatSeen, LandedSeen, PositionSeen, VerifierChanged
+from gcs.gate.states import State
+from tests.unit.gate.reactions import remember
+from tests.unit.gate.rows import Flight, Row, place, rows
 from tests.unit.gate.script import MS, SECOND, Script, policy
-from tests.unit.gate.situations import UP
+from tests.unit.gate.situations import UP, lead_to
 
 
-def braked(state: State) -> Reaction:
-    """One that follows setpoints is stopped by them, and told its hold mode when it is slow."""
-    by_setpoints = state in (State.MOVING, State.TAKING_PICTURE)
-    after, control, held = HELD
-    return Reaction(after, control, [] if by_setpoints else held, "aborted FENCE_BREACH")
+def dashes(flight: Flight) -> None:
+    """Five seconds later it is ten metres from the fence, at twelve metres a second towards it."""
+    script = flight.script
+    script.now_ns += 5 * SECOND
+    script.feed(HeartbeatSeen(script.armed, script.mode, script.mode.value))
+    script.feed(LandedSeen(script.landed))
+    script.effects.clear()
+    script.feed(PositionSeen((140.0, 0.0, -UP), (12.0, 0.0, 0.0), script.now_ns // MS))
 
 
-class TestJump:
-    @pytest.mark.parametrize("state", [*VERIFIED, State.RETURNING])
-    def test_it_holds_and_the_place_is_verified_anew(self, state: State) -> None:
-        script, request_id = flight(state)
-        found = reaction(script, request_id, lambda s: s.feed(sample(s, 20.0, reset=True)))
-        assert found == Reaction(*HELD, "aborted ESTIMATOR_RESET")
-        script.pos_ned = ned_from_enu((20.0, 0.0, UP))
-        assert script.gate.hold_goal_ned == ned_from_enu((20.0, 0.0, UP))
-        assert streams(script)
-
-    def test_a_held_vehicle_is_held_at_its_new_place(self) -> None:
-        script, request_id = flight(State.HOLDING)
-        found = reaction(script, request_id, lambda s: s.feed(sample(s, 20.0, reset=True)))
-        assert found == Reaction(State.HOLDING, Control.OURS, [], "")
-        assert script.gate.hold_goal_ned == ned_from_enu((20.0, 0.0, UP))
-
-    def test_or_in_silence_where_that_does_not_clear(self) -> None:
-        script, _ = flight(State.HOLDING)
-        script.feed(sample(script, 170.0, reset=True))
-        script.pos_ned = ned_from_enu((170.0, 0.0, UP))
-        assert script.gate.hold_goal_ned is None
-        assert not streams(script)
-
-    @pytest.mark.parametrize("state", [State.GROUNDED, State.LANDING, State.EXTERNAL])
-    def test_it_is_nothing_to_what_we_do_not_fly_to_a_place(self, state: State) -> None:
-        script, request_id = flight(state)
-        control = script.gate.control
-        found = reaction(script, request_id, lambda s: s.feed(sample(s, 20.0, reset=True)))
-        assert found == Reaction(state, control, [], "")
-
-    def test_nor_to_a_return_of_the_vehicles_own(self) -> None:
-        script = Script(policy("default")).fly(UP)
-        script.heartbeat(FlightMode.RETURN)
-        assert state_of(script) is State.RETURNING
-        found = reaction(script, 0, lambda s: s.feed(sample(s, 20.0, reset=True)))
-        assert found == Reaction(State.RETURNING, Control.NONE, [], "")
+def brakes_inside(flight: Flight) -> None:
+    """Asked to fly back at 2.5 m/s ([pace]), to the held place, which is before the fence."""
+    (brake,) = flight.script.all(SendSetpoint)
+    held_ned = flight.script.gate.hold_goal_ned
+    assert brake.permit.reason.startswith("brake")
+    assert brake.permit.pos_ned is not None
+    assert held_ned is not None
+    assert 140.0 - 2.5 / 0.95 <= brake.permit.pos_ned[0] <= held_ned[0] < 148.0
 
 
-class TestHomeMoved:
-    FAR, NEAR = HomeSeen((0.0, 5.0, 0.0)), HomeSeen((0.0, 0.9, 0.0))
-
-    @pytest.mark.parametrize("state", [*VERIFIED, State.RETURNING])
-    def test_it_holds(self, state: State) -> None:
-        script, request_id = flight(state)
-        assert reaction(script, request_id, lambda s: s.feed(self.FAR)) == Reaction(
-            *HELD, "aborted HOME_MOVED"
-        )
-
-    @pytest.mark.parametrize("state", VERIFIED)
-    def test_a_little_is_no_move(self, state: State) -> None:
-        script, request_id = flight(state)
-        control = script.gate.control
-        assert reaction(script, request_id, lambda s: s.feed(self.NEAR)) == Reaction(
-            state, control, [], ""
-        )
-
-    def test_a_held_vehicle_is_verified_anew(self) -> None:
-        script, request_id = flight(State.HOLDING)
-        script.feed(sample(script, 3.0))
-        assert reaction(script, request_id, lambda s: s.feed(self.FAR)) == Reaction(
-            State.HOLDING, Control.OURS, [], ""
-        )
-        assert script.gate.hold_goal_ned == ned_from_enu((3.0, 0.0, UP))
-
-    @pytest.mark.parametrize("state", [State.GROUNDED, State.LANDING, State.EXTERNAL])
-    def test_it_is_nothing_to_what_we_do_not_fly_to_a_place(self, state: State) -> None:
-        script, request_id = flight(state)
-        control = script.gate.control
-        assert reaction(script, request_id, lambda s: s.feed(self.FAR)) == Reaction(
-            state, control, [], ""
-        )
-
-    def test_nor_to_a_return_of_the_vehicles_own(self) -> None:
-        script = Script(policy("default")).fly(UP)
-        script.heartbeat(FlightMode.RETURN)
-        assert reaction(script, 0, lambda s: s.feed(self.FAR)) == Reaction(
-            State.RETURNING, Control.NONE, [], ""
-        )
+def fence_about(flight: Flight, east: str) -> None:
+    """The same fence about another home."""
+    script = flight.script
+    verifier = verifier_for(script.policy, script.autopilot, place(east, "0", "0"), None)
+    script.feed(VerifierChanged(verifier))
 
 
-class TestFenceMoved:
-    @pytest.mark.parametrize("state", VERIFIED)
-    def test_what_clears_no_more_is_held_with_the_reason(self, state: State) -> None:
-        script, request_id = flight(state)
-        found = reaction(script, request_id, lambda s: s.feed(VerifierChanged(elsewhere(s))))
-        code = "BAD_MISSION" if state is State.FLYING_MISSION else "OUTSIDE_FENCE"
-        assert found == Reaction(*HELD, f"aborted {code}")
-
-    def test_a_take_off_that_stands_is_given_up(self) -> None:
-        script = Script(policy("default"))
-        request_id = take_off(script)
-        found = reaction(script, request_id, lambda s: s.feed(VerifierChanged(elsewhere(s))))
-        assert found == Reaction(
-            State.GROUNDED,
-            Control.NONE,
-            [CommandKind.HOLD, CommandKind.DISARM],
-            "aborted OUTSIDE_FENCE",
-        )
-        assert reaction(script, request_id, lambda s: s.wait(1.1)).sent == [CommandKind.HOLD]
-
-    def test_a_held_vehicle_is_held_in_silence(self) -> None:
-        script, request_id = flight(State.HOLDING)
-        assert streams(script)
-        found = reaction(script, request_id, lambda s: s.feed(VerifierChanged(elsewhere(s))))
-        assert found == Reaction(State.HOLDING, Control.OURS, [], "")
-        assert not streams(script)
-
-    @pytest.mark.parametrize(
-        "state", [State.GROUNDED, State.RETURNING, State.LANDING, State.EXTERNAL]
-    )
-    def test_it_is_nothing_to_what_we_do_not_fly_to_a_place(self, state: State) -> None:
-        script, request_id = flight(state)
-        control = script.gate.control
-        found = reaction(script, request_id, lambda s: s.feed(VerifierChanged(elsewhere(s))))
-        assert found == Reaction(state, control, [], "")
+def tower(flight: Flight) -> None:
+    verifier = verifier_for(flight.script.policy, "px4", (0.0, 0.0, 0.0), None)
+    zone = Zone("tower", False, Circle((90.0, 90.0), 5.0), 0.0, 20.0)
+    flight.script.feed(VerifierChanged(replace(verifier, zones=(*verifier.zones, zone))))
 
 
-class TestBreach:
-    def dash(self, script: Script) -> None:
-        """Ten metres from the fence, at twelve metres a second towards it."""
-        script.now_ns += 5 * SECOND
-        script.feed(HeartbeatSeen(script.armed, script.mode, script.mode.value))
-        script.feed(LandedSeen(script.landed))
-        script.forget()
-        script.feed(PositionSeen((140.0, 0.0, -UP), (12.0, 0.0, 0.0), script.now_ns // MS))
-
-    @pytest.mark.parametrize("state", [s for s in FLIGHT if s is not State.LANDING])
-    def test_it_is_braked_in_the_instant_of_the_sample(self, state: State) -> None:
-        script, request_id = flight(state)
-        script.forget()
-        self.dash(script)
-        found = Reaction(
-            state_of(script), script.gate.control, script.commands(), ended(script, request_id)
-        )
-        assert found == braked(state)
-        (brake,) = script.all(SendSetpoint)
-        assert brake.permit.pos_ned is not None
-        assert script.gate.hold_goal_ned is not None
-        back_m = 2.5 / 0.95  # [pace]: it is asked to fly back at 2.5 m/s
-        assert 140.0 - back_m <= brake.permit.pos_ned[0] <= script.gate.hold_goal_ned[0] < 148.0
-
-    @pytest.mark.parametrize("state", [State.LANDING, State.HOLDING, State.EXTERNAL])
-    def test_what_lands_or_is_held_or_is_not_ours_is_left_alone(self, state: State) -> None:
-        script, _ = flight(state)
-        if state is State.HOLDING:
-            script.heartbeat(FlightMode.HOLD)
-        control = script.gate.control
-        self.dash(script)
-        assert (state_of(script), script.gate.control) == (state, control)
-        assert script.commands() == []
-        assert script.all(SendSetpoint) == []
-
-    @pytest.mark.parametrize("state", [State.MOVING, State.TAKING_PICTURE, State.FLYING_MISSION])
-    def test_it_is_braked_by_a_sample_that_comes_late(self, state: State) -> None:
-        script, request_id = stale(state)
-        script.pos_ned = ned_from_enu((0.0, 140.0, UP))
-        sample_ns = script.now_ns + 300 * MS
-        remember(script, pos_ned=ned_from_enu((0.0, 139.0, UP)))
-        script.now_ns = sample_ns
-        given = PositionSeen((140.0, 0.0, -UP), (12.0, 0.0, 0.0), script.now_ns // MS)
-        assert reaction(script, request_id, lambda s: s.feed(given)) == braked(state)
-        assert len(script.all(SendSetpoint)) == 1
-
-    def test_what_is_held_already_is_not_braked_when_its_sample_comes_late(self) -> None:
-        script, _ = flight(State.HOLDING)
-        script.heartbeat(FlightMode.HOLD)
-        script.reports_position = False
-        script.wait(1.2)
-        assert state_of(script) is State.STALE
-        self.dash(script)
-        assert script.commands() == []
-        assert state_of(script) is State.HOLDING
+def known_at(flight: Flight, north: str) -> None:
+    """The place that is known last lies so far north."""
+    remember(flight.script, pos_ned=(float(north), 0.0, -UP))
 
 
-def test_a_sample_of_the_ordinary_says_nothing() -> None:
-    for state in HEARD:
-        script, _ = flight(state)
-        effects = script.feed(PositionSeen(script.pos_ned, STILL, script.now_ns // MS))
-        assert [e for e in effects if not isinstance(e, Say)] == []
+def seen_at(flight: Flight, *numbers: str) -> None:
+    """One sample: so far east and north, so fast to the east and to the north."""
+    east, north, v_east, v_north = map(float, numbers)
+    now_ms = flight.script.now_ns // MS
+    flight.script.feed(PositionSeen((north, east, -UP), (v_north, v_east, 0.0), now_ms))
+
+
+ROWS = rows(
+    """
+# A jump holds and the place is verified anew.
+{VERIFIED, RETURNING} | jumps 20 0 1.5 | HOLDING OURS, sends HOLD, it aborted ESTIMATOR_RESET;
+    ... holds 20 0 1.5
+HOVERING; jumps 20 0 1.5; stands-at 20 0 1.5 | nothing | HOLDING OURS; streams
+# A held vehicle is held at its new place, or in silence where that does not clear.
+HOLDING | jumps 20 0 1.5 | =; holds 20 0 1.5
+HOLDING; stands-at 170 0 1.5 | jumps 170 0 1.5 | =; holds none; silent
+# It is nothing to what we do not fly to a place, nor to a return of the vehicle's own.
+{GROUNDED, LANDING, EXTERNAL} | jumps 20 0 1.5 | =
+flown; shows RETURN | jumps 20 0 1.5 | RETURNING NONE
+# 20 m between two samples are a jump without the counter, too.
+in HOVERING; goto 3 0 1.5; tick | sample 20 0 1.5
+    | HOLDING OURS, sends HOLD, goto aborted ESTIMATOR_RESET;
+    ... holds 20 0 1.5
+
+# Home that moves by more than a metre holds and is told.
+{VERIFIED, RETURNING} | home 5 0 0 | HOLDING OURS, sends HOLD, it aborted HOME_MOVED;
+    ... says "Home moved by 5.0 m while the vehicle flies"
+{VERIFIED} | home 0.9 0 0 | =
+in HOVERING | home 1 0 0 | = | home 2.0625 0 0 | HOLDING OURS, sends HOLD
+# A held vehicle is verified anew.
+HOLDING; sample 3 0 1.5 | home 5 0 0 | =; holds 3 0 1.5
+{GROUNDED, LANDING, EXTERNAL} | home 5 0 0 | =
+flown; shows RETURN | home 5 0 0 | RETURNING NONE
+# A first home did not move, and on the ground it may.
+unheard; shows HOLD armed; is IN_AIR; position | home 0 50 0 | EXTERNAL NONE; unsaid "moved"
+connected | home 0 50 0 | =; unsaid "moved"
+
+# A fence that moves: what clears no more is held with the reason.
+<TAKING_OFF, HOVERING, MOVING, TAKING_PICTURE, FLYING_MISSION> | fence elsewhere
+    | HOLDING OURS, sends HOLD, it aborted <OUTSIDE_FENCE, OUTSIDE_FENCE, OUTSIDE_FENCE,
+    ... OUTSIDE_FENCE, BAD_MISSION>
+in HOVERING; goto 100 0 1.5; wait 0.5
+    | fence-about -100 | HOLDING OURS, sends HOLD, goto aborted OUTSIDE_FENCE
+# A take-off that stands is given up.
+climb | fence elsewhere | GROUNDED NONE, sends HOLD DISARM, it aborted OUTSIDE_FENCE
+      | wait 1.1 | =, sends HOLD
+# A vehicle that is held or hovers outside the new fence is held in silence.
+HOLDING; tick | fence elsewhere | =; silent
+in HOVERING | fence-about 500 | HOLDING OURS, sends HOLD | wait 1 | =, sends HOLD; setpoints none
+{GROUNDED, RETURNING, LANDING, EXTERNAL} | fence elsewhere | =
+# A mission flies on only in the fence that it was verified by; the same one changes nothing.
+FLYING_MISSION | tower | HOLDING OURS, sends HOLD, it aborted BAD_MISSION
+in MOVING | fence again | =
+# In the grace it ends the stream with its reason.
+stale MOVING | fence elsewhere | STALE OURS, sends HOLD, it aborted OUTSIDE_FENCE
+    | position | HOLDING OURS
+
+# A breach ahead is braked in the instant of the sample; one that follows setpoints is stopped by
+# ... them (0.3 s + 12 / 5 s), and told its hold mode when it is slow.
+{TAKING_OFF, HOVERING, FLYING_MISSION, RETURNING}
+    | dashes; brakes-inside | HOLDING OURS, sends HOLD, it aborted FENCE_BREACH;
+    ... says "inclusion circle 'home'"
+in HOVERING | dashes; brakes-inside | HOLDING OURS
+    | stands-at 0 148 1.5; wait 2.65 | = | wait 0.1 | =, sends HOLD
+{MOVING, TAKING_PICTURE}
+    | dashes; brakes-inside | HOLDING OURS, it aborted FENCE_BREACH; says "inclusion circle 'home'"
+    | stands-at 0 148 1.5; wait 2.65 | = | wait 0.1 | =, sends HOLD
+# What lands, or is held, or is not ours is left alone.
+{LANDING, EXTERNAL, HOLDING; shows HOLD} | dashes | =; setpoints none
+# It is braked by a sample that comes late, but not where it is held already.
+stale {MOVING, TAKING_PICTURE}; known-at 139
+    | later 0.3; seen-at 0 140 0 12 | HOLDING OURS, it aborted FENCE_BREACH; brakes
+stale FLYING_MISSION; known-at 139
+    | later 0.3; seen-at 0 140 0 12 | HOLDING OURS, sends HOLD, it aborted FENCE_BREACH; brakes
+HOLDING; shows HOLD; no positions; wait 1.2 | dashes | HOLDING OURS
+in HOVERING; goto 100 0 1.5; at 100 0 1.5 by 12 0 0; no positions; wait 1.2
+    | stands-at 134 0 1.5; position | HOLDING OURS, goto aborted FENCE_BREACH; brakes
+    | wait 2.75 | STALE OURS, sends HOLD HOLD
+# It is so while control is being taken: invariant 6 begins with the first setpoint.
+in EXTERNAL; at 130 0 1.5; control; wait 0.3
+    | nothing | HOVERING TAKING
+    | later 0.5; seen-at 142 0 12 0 | HOLDING OURS, sends HOLD, control aborted FENCE_BREACH; brakes
+# A sample of the ordinary says nothing.
+{HEARD} | position | =; setpoints none
+""",
+    dashes,
+    tower,
+    brakes_inside,
+    fence_about,
+    known_at,
+    seen_at,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_what_clears_no_more(row: Row) -> None:
+    row.fly()
+
+
+@pytest.mark.parametrize("period_s", [0.5, 1.1, 1.3, 1.45])
+@pytest.mark.parametrize("state", [State.MOVING, State.HOVERING, State.FLYING_MISSION])
+def test_every_sample_is_predicted(state: State, period_s: float) -> None:
+    """Slower than the policy's age, faster than age and grace: each arrives in STALE."""
+    script = Script(policy("default"))
+    lead_to(state, script)
+    script.reports_position = False
+    east = 0.0
+    while east < 150.0 and script.gate.state is not State.HOLDING:
+        script.wait(period_s)
+        east += 8.0 * period_s
+        script.pos_ned, script.v_ned = ned_from_enu((east, 0.0, UP)), (0.0, 8.0, 0.0)
+        script.position()
+    assert script.gate.state is State.HOLDING
+    script.wait(2.0)  # setpoints stop it in 0.3 s + 8 / 5 s
+    assert CommandKind.HOLD in script.commands()
+    assert all(place[0] < 150.0 for _, place in script.setpoints())
