@@ -11,6 +11,9 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cache
 from math import hypot
+from typing import Any
+
+import pytest
 
 from tests.unit.autopilot.hand_flight import HandFlight
 from vehicle_sim.autopilot.manual.sticks import Sticks
@@ -119,3 +122,18 @@ def where(flight: HandFlight) -> Vec3:
 
 def hand(roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0, throttle: float = 0.5) -> Sticks:
     return Sticks(roll, pitch, yaw, throttle)
+
+
+def near(value: float, by: float) -> Any:
+    """That value, give or take."""
+    return pytest.approx(value, abs=by)
+
+
+def about(value: float) -> Any:
+    """That value, give or take 12 %."""
+    return pytest.approx(value, rel=0.12)
+
+
+def itself(by: float, *values: float) -> dict[float, object]:
+    """What is measured is the parameter's own value, give or take."""
+    return {value: near(value, by) for value in values}

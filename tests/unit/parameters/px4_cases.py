@@ -8,12 +8,7 @@ import pytest
 
 from tests.unit.parameters import px4_scripts as own
 from tests.unit.parameters import scripts as fly
-from tests.unit.parameters.probing import (
-    UP_M,
-    Case,
-    flat_m_s,
-    hand,
-)
+from tests.unit.parameters.probing import UP_M, Case, about, flat_m_s, hand, itself, near
 from vehicle_sim.autopilot.interface import Result, Setpoint
 from vehicle_sim.autopilot.tasks.return_height import return_up_m
 from vehicle_sim.plant.faults import AccelBias, GpsLost
@@ -43,41 +38,21 @@ CASES: tuple[Case, ...] = (
     Case(
         "COM_ACT_FAIL_ACT", {0: "warn", 2: "land", 4: "terminate"}, own.upset_action(own.DEAD_MOTOR)
     ),
-    Case("FD_ACT_EN", {0: inf, 1: pytest.approx(0.1, abs=0.03)}, own.upset_after_s(own.DEAD_MOTOR)),
-    Case(
-        "FD_ACT_MOT_THR",
-        {0.2: pytest.approx(0.1, abs=0.03), 0.5: inf},
-        own.upset_after_s(own.DEAD_MOTOR),
-    ),
+    Case("FD_ACT_EN", {0: inf, 1: near(0.1, 0.03)}, own.upset_after_s(own.DEAD_MOTOR)),
+    Case("FD_ACT_MOT_THR", {0.2: near(0.1, 0.03), 0.5: inf}, own.upset_after_s(own.DEAD_MOTOR)),
     Case(
         "FD_ACT_MOT_TOUT",
-        {100: pytest.approx(0.1, abs=0.03), 1000: pytest.approx(1.0, abs=0.03)},
+        {100: near(0.1, 0.03), 1000: near(1.0, 0.03)},
         own.upset_after_s(own.DEAD_MOTOR),
     ),
-    Case(
-        "FD_FAIL_P",
-        {40: pytest.approx(0.3, abs=0.03), 60: inf},
-        own.upset_after_s(own.tilted(0.0, 50.0)),
-    ),
-    Case(
-        "FD_FAIL_P_TTRI",
-        {0.3: pytest.approx(0.3, abs=0.03), 2.0: pytest.approx(2.0, abs=0.03)},
-        own.upset_after_s(own.tilted(0.0, 70.0)),
-    ),
-    Case(
-        "FD_FAIL_R",
-        {40: pytest.approx(0.3, abs=0.03), 60: inf},
-        own.upset_after_s(own.tilted(50.0)),
-    ),
-    Case(
-        "FD_FAIL_R_TTRI",
-        {0.3: pytest.approx(0.3, abs=0.03), 2.0: pytest.approx(2.0, abs=0.03)},
-        own.upset_after_s(own.tilted(70.0)),
-    ),
+    Case("FD_FAIL_P", {40: near(0.3, 0.03), 60: inf}, own.upset_after_s(own.tilted(0.0, 50.0))),
+    Case("FD_FAIL_P_TTRI", itself(0.03, 0.3, 2.0), own.upset_after_s(own.tilted(0.0, 70.0))),
+    Case("FD_FAIL_R", {40: near(0.3, 0.03), 60: inf}, own.upset_after_s(own.tilted(50.0))),
+    Case("FD_FAIL_R_TTRI", itself(0.03, 0.3, 2.0), own.upset_after_s(own.tilted(70.0))),
     # Silence.
     Case(
         "COM_DL_LOSS_T",
-        {5: pytest.approx(5.0, abs=0.2), 8: pytest.approx(8.0, abs=0.2)},
+        itself(0.2, 5, 8),
         fly.seconds_until(fly.station_silent, fly.says("Connection to ground station lost")),
     ),
     Case(
@@ -88,7 +63,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "COM_FAIL_ACT_T",
-        {0.0: pytest.approx(5.0, abs=0.2), 3.0: pytest.approx(8.0, abs=0.2)},
+        {0.0: near(5.0, 0.2), 3.0: near(8.0, 0.2)},
         fly.seconds_until(fly.station_silent, fly.leaves_mode(HOLD)),
         {"NAV_DLL_ACT": 2.0, "COM_DL_LOSS_T": 5.0},
     ),
@@ -99,7 +74,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "COM_OF_LOSS_T",
-        {0.5: pytest.approx(0.5, abs=0.12), 2.0: pytest.approx(2.0, abs=0.12)},
+        itself(0.12, 0.5, 2.0),
         fly.seconds_until(own.offboard_then_silent, fly.leaves_mode("OFFBOARD")),
     ),
     Case(
@@ -116,24 +91,22 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "COM_RC_LOSS_T",
-        {0.5: pytest.approx(0.5, abs=0.15), 3.0: pytest.approx(3.0, abs=0.15)},
+        itself(0.15, 0.5, 3.0),
         fly.seconds_until(own.sticks_then_silent("POSCTL"), fly.leaves_mode("POSCTL")),
         _AT_ONCE,
     ),
     # Position.
     Case(
-        "COM_POSCTL_NAVL",
-        {0: "ALTCTL", 1: LANDS},
-        fly.mode_after(0.0, own.position_lost_by_hand),
+        "COM_POSCTL_NAVL", {0: "ALTCTL", 1: LANDS}, fly.mode_after(0.0, own.position_lost_by_hand)
     ),
     Case(
         "COM_POS_FS_EPH",
-        {1.0: pytest.approx(2.6, abs=0.3), -1.0: pytest.approx(5.0, abs=0.3)},
+        {1.0: near(2.6, 0.3), -1.0: near(5.0, 0.3)},
         fly.seconds_until(fly.strike(GpsLost()), fly.leaves_mode(HOLD)),
     ),
     Case(
         "EKF2_NOAID_TOUT",
-        {2_000_000: pytest.approx(2.0, abs=0.25), 6_000_000: pytest.approx(6.0, abs=0.25)},
+        {2_000_000: near(2.0, 0.25), 6_000_000: near(6.0, 0.25)},
         own.lost_position_s,
         {"COM_POS_FS_EPH": -1.0},
     ),
@@ -151,7 +124,7 @@ CASES: tuple[Case, ...] = (
     Case("COM_ARM_AUTH_ID", {10: 10, 77: 77}, own.authorizer, {"COM_ARM_AUTH_REQ": 1}),
     Case(
         "COM_ARM_AUTH_TO",
-        {1.0: pytest.approx(1.0, abs=0.15), 3.0: pytest.approx(3.0, abs=0.15)},
+        itself(0.15, 1.0, 3.0),
         own.waits_for_authorizer_s,
         {"COM_ARM_AUTH_REQ": 1},
     ),
@@ -173,12 +146,12 @@ CASES: tuple[Case, ...] = (
     Case("SYS_FAILURE_EN", {0: 0, 1: 1}, own.injects),
     Case(
         "COM_DISARM_LAND",
-        {0.5: pytest.approx(0.5, abs=0.15), 4.0: pytest.approx(4.0, abs=0.15), -1.0: inf},
+        {0.5: near(0.5, 0.15), 4.0: near(4.0, 0.15), -1.0: inf},
         fly.disarms_after_landing_s,
     ),
     Case(
         "COM_DISARM_PRFLT",
-        {3.0: pytest.approx(3.0, abs=0.15), 10.0: pytest.approx(10.0, abs=0.15), -1.0: inf},
+        {3.0: near(3.0, 0.15), 10.0: near(10.0, 0.15), -1.0: inf},
         fly.disarms_idle_s,
     ),
     # Fence and rally points.
@@ -193,147 +166,88 @@ CASES: tuple[Case, ...] = (
     Case("GF_PREDICT", {0: 0, 1: 2}, own.fence_kinds(10.0, 25.0, 35.0), {"GF_MAX_HOR_DIST": 30.0}),
     Case("RTL_TYPE", {0: 0.0, 1: 30.0}, own.returns_to),
     # Flights.
-    Case(
-        "CAM_EXPOSURE_S",
-        {0.5: pytest.approx(0.5, abs=0.1), 3.0: pytest.approx(3.0, abs=0.1)},
-        fly.exposure_s,
-    ),
-    Case(
-        "COM_SPOOLUP_TIME",
-        {0.0: pytest.approx(0.0, abs=0.12), 2.0: pytest.approx(2.0, abs=0.12)},
-        fly.lifts_off_after_s,
-    ),
+    Case("CAM_EXPOSURE_S", itself(0.1, 0.5, 3.0), fly.exposure_s),
+    Case("COM_SPOOLUP_TIME", itself(0.12, 0.0, 2.0), fly.lifts_off_after_s),
     Case("COM_TAKEOFF_ACT", {0: HOLD, 1: "AUTO.MISSION"}, own.after_take_off),
     Case(
         "MIS_DIST_1WP",
         {100.0: Result.TEMPORARILY_REJECTED, 900.0: Result.ACCEPTED},
         own.mission_result,
     ),
-    Case(
-        "MIS_PD_TO",
-        {2.0: pytest.approx(2.0, abs=0.3), 5.0: pytest.approx(5.0, abs=0.3)},
-        own.payload_s,
-    ),
+    Case("MIS_PD_TO", itself(0.3, 2.0, 5.0), own.payload_s),
     Case(
         "MIS_TAKEOFF_ALT",
-        {2.5: pytest.approx(2.5, abs=0.3), 6.0: pytest.approx(6.0, abs=0.3)},
+        itself(0.3, 2.5, 6.0),
         fly.take_off_height_m,
         also={"NAV_MC_ALT_RAD": 0.2},
     ),
     Case(
         "NAV_MC_ALT_RAD",
-        {0.2: pytest.approx(5.0 - 0.15, abs=0.15), 0.8: pytest.approx(5.0 - 0.65, abs=0.15)},
+        {0.2: near(5.0 - 0.15, 0.15), 0.8: near(5.0 - 0.65, 0.15)},
         fly.take_off_height_m,
         also={"MIS_TAKEOFF_ALT": 5.0},
     ),
     Case(
         "MPC_ACC_DOWN_MAX",
-        {2.0: pytest.approx(2.0, abs=0.1), 4.0: pytest.approx(4.0, abs=0.1)},
+        itself(0.1, 2.0, 4.0),
         fly.acceleration_m_s2(0.0, 1.0),
         {"MPC_Z_V_AUTO_DN": 4.0, "MPC_Z_VEL_MAX_DN": 4.0, "MPC_JERK_AUTO": 30.0},
     ),
     Case(
         "MPC_ACC_HOR",
-        {2.0: pytest.approx(2.0, abs=0.05), 6.0: pytest.approx(6.0, abs=0.05)},
+        itself(0.05, 2.0, 6.0),
         fly.acceleration_m_s2(60.0, UP_M),
         {"MPC_JERK_AUTO": 30.0},
     ),
     Case(
         "MPC_ACC_UP_MAX",
-        {2.0: pytest.approx(2.0, abs=0.05), 5.0: pytest.approx(5.0, abs=0.05)},
+        itself(0.05, 2.0, 5.0),
         fly.acceleration_m_s2(0.0, 60.0),
         {"MPC_JERK_AUTO": 30.0},
     ),
     Case(
         "MPC_LAND_ALT1",
-        {6.0: pytest.approx(1.5, abs=0.15), 11.0: pytest.approx(1.1, abs=0.15)},
+        {6.0: near(1.5, 0.15), 11.0: near(1.1, 0.15)},
         fly.sink_at(8.0),
         {"MPC_LAND_ALT2": 5.0},
     ),
-    Case(
-        "MPC_LAND_ALT2",
-        {2.0: pytest.approx(1.25, abs=0.12), 8.0: pytest.approx(0.75, abs=0.12)},
-        fly.sink_at(7.0),
-    ),
-    Case(
-        "MPC_LAND_SPEED",
-        {0.7: pytest.approx(0.7, abs=0.1), 1.2: pytest.approx(1.2, abs=0.1)},
-        fly.sink_at(3.0),
-    ),
+    Case("MPC_LAND_ALT2", {2.0: near(1.25, 0.12), 8.0: near(0.75, 0.12)}, fly.sink_at(7.0)),
+    Case("MPC_LAND_SPEED", itself(0.1, 0.7, 1.2), fly.sink_at(3.0)),
     Case(
         "MPC_TKO_RAMP_T",
         # 1 m/s is two thirds of MPC_TKO_SPEED.
-        {0.0: pytest.approx(0.6, abs=0.3), 5.0: pytest.approx(5.0 * 2 / 3 + 0.3, abs=0.3)},
+        {0.0: near(0.6, 0.3), 5.0: near(5.0 * 2 / 3 + 0.3, 0.3)},
         own.climbs_1_m_s_after_s,
     ),
-    Case(
-        "MPC_TKO_SPEED",
-        {1.0: pytest.approx(1.0, abs=0.15), 2.5: pytest.approx(2.5, abs=0.25)},
-        fly.take_off_climb_m_s,
-    ),
-    Case(
-        "MPC_XY_CRUISE",
-        {3.0: pytest.approx(3.0, abs=0.4), 8.0: pytest.approx(8.0, abs=0.4)},
-        fly.cruise_m_s,
-    ),
+    Case("MPC_TKO_SPEED", {1.0: near(1.0, 0.15), 2.5: near(2.5, 0.25)}, fly.take_off_climb_m_s),
+    Case("MPC_XY_CRUISE", itself(0.4, 3.0, 8.0), fly.cruise_m_s),
     Case(
         "MPC_XY_VEL_MAX",
-        {4.0: pytest.approx(4.0, abs=0.3), 12.0: pytest.approx(8.0, abs=0.4)},
+        {4.0: near(4.0, 0.3), 12.0: near(8.0, 0.4)},
         fly.velocity(Setpoint(v_ned=(8.0, 0.0, 0.0)), 6.0),
     ),
-    Case(
-        "MPC_YAWRAUTO_MAX",
-        {30.0: pytest.approx(30.0, abs=4.0), 60.0: pytest.approx(60.0, abs=6.0)},
-        fly.turn_deg_s,
-    ),
+    Case("MPC_YAWRAUTO_MAX", {30.0: near(30.0, 4.0), 60.0: near(60.0, 6.0)}, fly.turn_deg_s),
     Case(
         "MPC_YAW_MODE",
-        {
-            0: pytest.approx(-0.3, abs=0.6),
-            1: pytest.approx(1.0, abs=0.05),
-            2: pytest.approx(-1.0, abs=0.05),
-        },
+        {0: near(-0.3, 0.6), 1: near(1.0, 0.05), 2: near(-1.0, 0.05)},
         own.nose_homewards,
     ),
-    Case(
-        "MPC_Z_VEL_MAX_DN",
-        {0.8: pytest.approx(0.8, abs=0.2), 2.0: pytest.approx(1.5, abs=0.2)},
-        fly.descent_m_s_to(2.0),
-    ),
-    Case(
-        "MPC_Z_VEL_MAX_UP",
-        {1.0: pytest.approx(1.0, abs=0.2), 5.0: pytest.approx(3.0, abs=0.3)},
-        fly.climb_m_s_to(30.0),
-    ),
-    Case(
-        "MPC_Z_V_AUTO_DN",
-        {0.8: pytest.approx(0.8, abs=0.2), 1.5: pytest.approx(1.5, abs=0.2)},
-        fly.descent_m_s_to(2.0),
-    ),
-    Case(
-        "MPC_Z_V_AUTO_UP",
-        {1.0: pytest.approx(1.0, abs=0.2), 3.0: pytest.approx(3.0, abs=0.3)},
-        fly.climb_m_s_to(30.0),
-    ),
-    Case(
-        "NAV_ACC_RAD",
-        {2.0: pytest.approx(1.7, abs=0.5), 6.0: pytest.approx(5.7, abs=0.5)},
-        fly.reached_at_m,
-    ),
+    Case("MPC_Z_VEL_MAX_DN", {0.8: near(0.8, 0.2), 2.0: near(1.5, 0.2)}, fly.descent_m_s_to(2.0)),
+    Case("MPC_Z_VEL_MAX_UP", {1.0: near(1.0, 0.2), 5.0: near(3.0, 0.3)}, fly.climb_m_s_to(30.0)),
+    Case("MPC_Z_V_AUTO_DN", itself(0.2, 0.8, 1.5), fly.descent_m_s_to(2.0)),
+    Case("MPC_Z_V_AUTO_UP", {1.0: near(1.0, 0.2), 3.0: near(3.0, 0.3)}, fly.climb_m_s_to(30.0)),
+    Case("NAV_ACC_RAD", {2.0: near(1.7, 0.5), 6.0: near(5.7, 0.5)}, fly.reached_at_m),
     Case(
         "RTL_CONE_ANG",
         {0: 30.0, 45: pytest.approx(6.0)},
         lambda s: return_up_m(s.parameters(), (0.0, 0.0, 0.0), (6.0, 0.0, -2.0)),
     ),
     Case(
-        "RTL_DESCEND_ALT",
-        {3.0: pytest.approx(3.0, abs=0.5), 8.0: pytest.approx(8.0, abs=0.5)},
-        fly.return_lands_from_m,
-        {"RTL_RETURN_ALT": 12.0},
+        "RTL_DESCEND_ALT", itself(0.5, 3.0, 8.0), fly.return_lands_from_m, {"RTL_RETURN_ALT": 12.0}
     ),
     Case(
         "RTL_LAND_DELAY",
-        {0.5: pytest.approx(0.5, abs=0.6), 4.0: pytest.approx(4.0, abs=0.6)},
+        itself(0.6, 0.5, 4.0),
         fly.return_waits_s,
         {"RTL_RETURN_ALT": 12.0, "RTL_DESCEND_ALT": 10.0},
     ),
@@ -342,11 +256,7 @@ CASES: tuple[Case, ...] = (
         {5.0: 30.0, 10.0: pytest.approx(8.0)},
         lambda s: return_up_m(s.parameters(), (0.0, 0.0, 0.0), (8.0, 0.0, -2.0)),
     ),
-    Case(
-        "RTL_RETURN_ALT",
-        {15.0: pytest.approx(15.0, abs=0.6), 20.0: pytest.approx(20.0, abs=0.6)},
-        fly.return_top_m(25.0),
-    ),
+    Case("RTL_RETURN_ALT", itself(0.6, 15.0, 20.0), fly.return_top_m(25.0)),
     # Sticks.
     Case("COM_RC_IN_MODE", {0: False, 1: True}, own.joystick_counts),
     Case("COM_RC_OVERRIDE", {0: HOLD, 1: "POSCTL"}, fly.mode_after(0.0, own.stick_moved)),
@@ -368,7 +278,7 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "MPC_HOLD_DZ",
-        {0.1: pytest.approx(0.0), 0.0: pytest.approx(0.5, abs=0.3)},
+        {0.1: pytest.approx(0.0), 0.0: near(0.5, 0.3)},
         fly.feels(lambda f: f.velocity(hand(pitch=0.1))[0]),
     ),
     Case(
@@ -394,22 +304,22 @@ CASES: tuple[Case, ...] = (
     ),
     Case(
         "MPC_VEL_MANUAL",
-        {3.0: pytest.approx(3.0, abs=0.3), 6.0: pytest.approx(6.0, abs=0.4)},
+        {3.0: near(3.0, 0.3), 6.0: near(6.0, 0.4)},
         fly.by_hand("POSCTL", 5.0, flat_m_s, forward=1000),
     ),
     Case(
         "MPC_XY_MAN_EXPO",
-        {0.0: pytest.approx(4.444, abs=0.01), 1.0: pytest.approx(0.878, abs=0.01)},
+        {0.0: near(4.444, 0.01), 1.0: near(0.878, 0.01)},
         fly.feels(lambda f: f.velocity(hand(pitch=0.5))[0]),
     ),
     Case(
         "MPC_YAW_EXPO",
-        {0.0: pytest.approx(1.1636, abs=0.01), 1.0: pytest.approx(0.2298, abs=0.01)},
+        {0.0: near(1.1636, 0.01), 1.0: near(0.2298, 0.01)},
         fly.feels(lambda f: f.turn(hand(yaw=0.5))),
     ),
     Case(
         "MPC_Z_MAN_EXPO",
-        {0.0: pytest.approx(1.3333, abs=0.01), 1.0: pytest.approx(0.2634, abs=0.01)},
+        {0.0: near(1.3333, 0.01), 1.0: near(0.2634, 0.01)},
         fly.feels(lambda f: f.climb(hand(throttle=0.75))),
     ),
     Case("RC_MAP_PITCH", {0: 0, 1: -79, 2: 79}, own.radio(pitch=1), {**_HEARD}),
@@ -420,125 +330,95 @@ CASES: tuple[Case, ...] = (
     Case("MC_ORBIT_RAD_MAX", {20.0: Result.DENIED, 100.0: Result.ACCEPTED}, own.orbit_result),
     Case(
         "FLW_TGT_ALT_M",
-        {0: pytest.approx(10.0, abs=0.7), 2: pytest.approx(12.0, abs=0.7)},
+        {0: near(10.0, 0.7), 2: near(12.0, 0.7)},
         own.beside_leader(2),
         {"FLW_TGT_HT": 10.0},
     ),
-    Case(
-        "FLW_TGT_DST",
-        {8.0: pytest.approx(-8.0, abs=1.5), 15.0: pytest.approx(-15.0, abs=1.5)},
-        own.beside_leader(0),
-    ),
-    Case(
-        "FLW_TGT_FA",
-        {180.0: pytest.approx(0.0, abs=1.5), 90.0: pytest.approx(8.0, abs=1.5)},
-        own.beside_leader(1),
-    ),
-    Case(
-        "FLW_TGT_HT",
-        {8.0: pytest.approx(8.0, abs=0.7), 15.0: pytest.approx(15.0, abs=0.7)},
-        own.beside_leader(2),
-    ),
-    Case(
-        "FLW_TGT_MAX_VEL",
-        {1.0: pytest.approx(0.3, abs=0.25), 5.0: pytest.approx(1.3, abs=0.4)},
-        own.goes_round_m,
-    ),
-    Case(
-        "FLW_TGT_RS",
-        {0.0: pytest.approx(3.0, abs=0.05), 1.0: pytest.approx(1.2, abs=0.3)},
-        own.feeds_forward_m_s,
-    ),
+    Case("FLW_TGT_DST", {8.0: near(-8.0, 1.5), 15.0: near(-15.0, 1.5)}, own.beside_leader(0)),
+    Case("FLW_TGT_FA", {180.0: near(0.0, 1.5), 90.0: near(8.0, 1.5)}, own.beside_leader(1)),
+    Case("FLW_TGT_HT", itself(0.7, 8.0, 15.0), own.beside_leader(2)),
+    Case("FLW_TGT_MAX_VEL", {1.0: near(0.3, 0.25), 5.0: near(1.3, 0.4)}, own.goes_round_m),
+    Case("FLW_TGT_RS", {0.0: near(3.0, 0.05), 1.0: near(1.2, 0.3)}, own.feeds_forward_m_s),
     # Control loops.
     Case(
         "MC_ROLLRATE_MAX",
-        {100.0: pytest.approx(1.9, abs=0.6), 220.0: pytest.approx(4.0, abs=0.6)},
+        {100.0: near(1.9, 0.6), 220.0: near(4.0, 0.6)},
         fly.fastest("rate_x", fly.tips(fly.turned(roll=90.0)), 0.4),
     ),
     Case(
         "MC_PITCHRATE_MAX",
-        {100.0: pytest.approx(1.9, abs=0.6), 220.0: pytest.approx(4.0, abs=0.6)},
+        {100.0: near(1.9, 0.6), 220.0: near(4.0, 0.6)},
         fly.fastest("rate_y", fly.tips(fly.turned(pitch=90.0)), 0.4),
     ),
     Case(
         "MC_YAWRATE_MAX",
-        {40.0: pytest.approx(0.7, abs=0.2), 200.0: pytest.approx(2.0, abs=0.6)},
+        {40.0: near(0.7, 0.2), 200.0: near(2.0, 0.6)},
         fly.fastest("rate_z", fly.tips(fly.turned(yaw=90.0)), 0.8),
     ),
     Case(
         "MC_ROLLRATE_P",
-        {0.075: pytest.approx(0.228, rel=0.12), 0.15: pytest.approx(0.436, rel=0.12)},
+        {0.075: about(0.228), 0.15: about(0.436)},
         fly.answer("rate_x", fly.spins((1.0, 0.0, 0.0)), 0.04),
     ),
     Case(
         "MC_PITCHRATE_P",
-        {0.075: pytest.approx(0.216, rel=0.12), 0.15: pytest.approx(0.393, rel=0.12)},
+        {0.075: about(0.216), 0.15: about(0.393)},
         fly.answer("rate_y", fly.spins((0.0, 1.0, 0.0)), 0.04),
     ),
     Case(
         "MC_YAWRATE_P",
-        {0.1: pytest.approx(0.013, rel=0.12), 0.2: pytest.approx(0.024, rel=0.12)},
+        {0.1: about(0.013), 0.2: about(0.024)},
         fly.answer("rate_z", fly.spins((0.0, 0.0, 0.1)), 0.1),
     ),
     Case(
         "MC_ROLL_P",
-        {3.25: pytest.approx(0.052, rel=0.12), 6.5: pytest.approx(0.1, rel=0.12)},
+        {3.25: about(0.052), 6.5: about(0.1)},
         fly.answer("qx", fly.tips(fly.turned(roll=20.0)), 0.12),
     ),
     Case(
         "MC_PITCH_P",
-        {3.25: pytest.approx(0.053, rel=0.12), 6.5: pytest.approx(0.103, rel=0.12)},
+        {3.25: about(0.053), 6.5: about(0.103)},
         fly.answer("qy", fly.tips(fly.turned(pitch=20.0)), 0.12),
     ),
     Case(
         "MC_YAW_P",
-        {1.4: pytest.approx(0.026, rel=0.12), 2.8: pytest.approx(0.051, rel=0.12)},
+        {1.4: about(0.026), 2.8: about(0.051)},
         fly.answer("qz", fly.tips(fly.turned(yaw=20.0)), 0.3),
     ),
     Case(
         # A loop of second order with MPC_XY_VEL_P_ACC = 1.8 gives 0.25, 0.45, less the tilt's lag.
         "MPC_XY_P",
-        {0.5: pytest.approx(0.22, rel=0.12), 0.95: pytest.approx(0.40, rel=0.12)},
+        {0.5: about(0.22), 0.95: about(0.40)},
         fly.answer("pos_n", fly.reference(ref_n=1.0, goal_n=1.0), 1.0, hover_s=6.0),
     ),
     Case(
         "MPC_XY_VEL_P_ACC",
-        {1.2: pytest.approx(0.32, rel=0.12), 3.0: pytest.approx(0.66, rel=0.12)},
+        {1.2: about(0.32), 3.0: about(0.66)},
         fly.answer("vel_n", fly.reference(ref_n=1.0, goal_n=1.0), 0.5),
     ),
     Case(
         "MPC_Z_P",
-        {0.5: pytest.approx(0.306, rel=0.12), 1.0: pytest.approx(0.568, rel=0.12)},
+        {0.5: about(0.306), 1.0: about(0.568)},
         fly.answer("pos_d", fly.reference(ref_d=1.0, goal_d=1.0), 1.0, hover_s=6.0),
     ),
     Case(
         "MPC_Z_VEL_P_ACC",
-        {2.0: pytest.approx(0.663, rel=0.12), 6.0: pytest.approx(0.855, rel=0.12)},
+        {2.0: about(0.663), 6.0: about(0.855)},
         fly.answer("vel_d", fly.reference(ref_d=1.0, goal_d=1.0), 0.5),
     ),
     Case(
         "MPC_XY_VEL_I_ACC",
-        {0.1: pytest.approx(-0.185, rel=0.12), 0.8: pytest.approx(-1.195, rel=0.12)},
+        {0.1: about(-0.185), 0.8: about(-1.195)},
         fly.learns("int_n", 3.0, wind_n=8.0),
     ),
+    Case("MPC_Z_VEL_I_ACC", {0.5: about(-0.749), 3.0: about(-2.299)}, fly.lifts(3.0, 0.8)),
     Case(
-        "MPC_Z_VEL_I_ACC",
-        {0.5: pytest.approx(-0.749, rel=0.12), 3.0: pytest.approx(-2.299, rel=0.12)},
-        fly.lifts(3.0, 0.8),
+        "MPC_JERK_AUTO", {10.0: near(1.0, 0.1), 30.0: near(3.0, 0.1)}, fly.acceleration_after(0.1)
     ),
-    Case(
-        "MPC_JERK_AUTO",
-        {10.0: pytest.approx(1.0, abs=0.1), 30.0: pytest.approx(3.0, abs=0.1)},
-        fly.acceleration_after(0.1),
-    ),
-    Case(
-        "MPC_TILTMAX_AIR",
-        {20.0: pytest.approx(20.0, abs=1.0), 45.0: pytest.approx(45.0, abs=1.0)},
-        fly.lean_deg,
-    ),
+    Case("MPC_TILTMAX_AIR", itself(1.0, 20.0, 45.0), fly.lean_deg),
     Case(
         "MPC_XY_ERR_MAX",
-        {2.0: pytest.approx(1.7, abs=0.3), 4.0: pytest.approx(3.3, abs=0.5)},
+        {2.0: near(1.7, 0.3), 4.0: near(3.3, 0.5)},
         own.lags_m,
         {"MPC_TILTMAX_AIR": 20.0, "MPC_XY_CRUISE": 8.0},
     ),
@@ -557,27 +437,11 @@ CASES: tuple[Case, ...] = (
         fly.logs_written,
     ),
     # Simulated sensors.
-    Case(
-        "SIM_BARO_OFF_P",
-        {0.0: pytest.approx(0.0, abs=1.0), -240.2: pytest.approx(20.0, abs=1.0)},
-        own.baro_off_m,
-    ),
+    Case("SIM_BARO_OFF_P", {0.0: near(0.0, 1.0), -240.2: near(20.0, 1.0)}, own.baro_off_m),
     Case("SIM_BAT_DRAIN", {30.0: 69, 120.0: 94}, own.percent_after_10_s),
     Case("SIM_BAT_MIN_PCT", {50.0: 100, 90.0: 92}, own.percent_after_10_s),
     Case("SIM_GPS_USED", {10: (3, 10), 14: (3, 14), 3: (1, 0)}, own.satellites),
-    Case(
-        "SIM_MAG_OFFSET_X",
-        {0.0: pytest.approx(0.21, abs=0.1), 1.0: pytest.approx(1.21, abs=0.1)},
-        own.field_gauss(0),
-    ),
-    Case(
-        "SIM_MAG_OFFSET_Y",
-        {0.0: pytest.approx(0.0, abs=0.1), 1.0: pytest.approx(1.0, abs=0.1)},
-        own.field_gauss(1),
-    ),
-    Case(
-        "SIM_MAG_OFFSET_Z",
-        {0.0: pytest.approx(0.44, abs=0.1), 1.0: pytest.approx(1.44, abs=0.1)},
-        own.field_gauss(2),
-    ),
+    Case("SIM_MAG_OFFSET_X", {0.0: near(0.21, 0.1), 1.0: near(1.21, 0.1)}, own.field_gauss(0)),
+    Case("SIM_MAG_OFFSET_Y", itself(0.1, 0.0, 1.0), own.field_gauss(1)),
+    Case("SIM_MAG_OFFSET_Z", {0.0: near(0.44, 0.1), 1.0: near(1.44, 0.1)}, own.field_gauss(2)),
 )

@@ -438,7 +438,6 @@ class Served(Bench):
         self.now_ns = 0
         self.logs: list[Log] = []
         self.sequence = 0
-        self.inbox: list[m.Message] = []
         self.raw = b""
         self.stored = parameters.value
 

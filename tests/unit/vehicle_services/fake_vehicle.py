@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from inspect import isfunction, signature
+from typing import Any
 
 from vehicle_sim.autopilot.boot import READY
 from vehicle_sim.autopilot.fence import rally
@@ -10,30 +12,26 @@ from vehicle_sim.autopilot.fence import zones as fence
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import (
     AttitudeGoal,
-    AttitudeSetpoint,
     Estimate,
     FenceState,
     Geodetic,
     GpsFix,
     Landed,
     Orbiting,
-    OrbitRequest,
     PlanItem,
     Power,
     Readings,
     Refusal,
     Result,
-    Setpoint,
-    SpeedType,
     Target,
     Truth,
+    Vehicle,
     VehicleEvent,
 )
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.estimation.estimator import Health
 from vehicle_sim.numerics.vectors import Vec3
-from vehicle_sim.plant.faults import Fault
 from vehicle_sim.services.profile import profile_of
 from vehicle_sim.services.server import VehicleServer
 from vehicle_sim.services.stream_sets import LinkMode, StreamSets
@@ -134,9 +132,6 @@ class FakeVehicle:
     def clock_ns(self) -> int:
         return self.time_ns
 
-    def inject(self, fault: Fault) -> None:
-        self._note("inject", fault)
-
     @property
     def truth(self) -> Truth:
         return Truth(
@@ -189,13 +184,23 @@ class FakeVehicle:
         self.calls.append((name, *given))
         return self.answers.get(name, Result.ACCEPTED)
 
+    def __getattr__(self, name: str) -> Any:
+        """Every other method of a `Vehicle`: noted with what it was given, and answered."""
+        asked = vars(Vehicle).get(name)
+        if not isfunction(asked):
+            raise AttributeError(name)
+
+        def noted(*given: object, **by_name: object) -> Result:
+            bound = signature(asked).bind(self, *given, **by_name)
+            bound.apply_defaults()
+            return self._note(name, *bound.args[1:])
+
+        return noted
+
     def arm(self, force: bool) -> Result:
         result = self._note("arm", force)
         self.armed = self.armed or result is Result.ACCEPTED
         return result
-
-    def command_acked(self, command: int, result: int, param1: int, param2: int) -> None:
-        self._note("command_acked", command, result, param1, param2)
 
     def disarm(self, force: bool) -> Result:
         self.armed = False
@@ -204,79 +209,6 @@ class FakeVehicle:
     def set_mode(self, base_mode: int, custom_mode: int) -> Result:
         self.custom_mode = custom_mode
         return self._note("set_mode", base_mode, custom_mode)
-
-    def set_mode_kind(self, kind: str) -> Result:
-        return self._note("set_mode_kind", kind)
-
-    def take_off(self, up_above_home_m: float | None) -> Result:
-        return self._note("take_off", up_above_home_m)
-
-    def land(self) -> Result:
-        return self._note("land")
-
-    def return_home(self) -> Result:
-        return self._note("return_home")
-
-    def reposition(
-        self,
-        pos_ned: Vec3 | None,
-        yaw_rad: float | None,
-        speed_m_s: float | None,
-        changes_mode: bool = True,
-    ) -> Result:
-        return self._note("reposition", pos_ned, yaw_rad, speed_m_s, changes_mode)
-
-    def pause(self) -> Result:
-        return self._note("pause")
-
-    def resume(self) -> Result:
-        return self._note("resume")
-
-    def change_speed(self, kind: SpeedType, speed_m_s: float | None) -> Result:
-        return self._note("change_speed", kind, speed_m_s)
-
-    def change_altitude(self, up_above_home_m: float) -> Result:
-        return self._note("change_altitude", up_above_home_m)
-
-    def condition_yaw(
-        self, yaw_rad: float, relative: bool, rate_rad_s: float, direction: int
-    ) -> Result:
-        return self._note("condition_yaw", yaw_rad, relative, rate_rad_s, direction)
-
-    def orbit(self, asked: OrbitRequest) -> Result:
-        return self._note("orbit", asked)
-
-    def look_at(self, where_ned: Vec3 | None) -> Result:
-        return self._note("look_at", where_ned)
-
-    def joystick(self, forward: int, right: int, up: int, clockwise: int, wall_ns: int) -> None:
-        self._note("joystick", forward, right, up, clockwise, wall_ns)
-
-    def override_channels(self, channels_us: tuple[int, ...], wall_ns: int) -> None:
-        self._note("override_channels", channels_us, wall_ns)
-
-    def hear_leader(
-        self, system: int, where: Geodetic, v_ned: Vec3, heading_rad: float | None, wall_ns: int
-    ) -> None:
-        self._note("hear_leader", system, where, v_ned, heading_rad, wall_ns)
-
-    def set_home(self, where: Geodetic | None) -> Result:
-        return self._note("set_home", where)
-
-    def set_setpoint(self, setpoint: Setpoint) -> None:
-        self._note("set_setpoint", setpoint)
-
-    def set_attitude(self, setpoint: AttitudeSetpoint) -> None:
-        self._note("set_attitude", setpoint)
-
-    def capture_image(self, interval_s: float, count: int) -> Result:
-        return self._note("capture_image", interval_s, count)
-
-    def stop_capture(self) -> Result:
-        return self._note("stop_capture")
-
-    def mission_start(self, first: int, last: int) -> Result:
-        return self._note("mission_start", first, last)
 
     def mission_set_current(self, seq: int) -> Result:
         if seq >= len(self.plan):
@@ -294,59 +226,11 @@ class FakeVehicle:
     def check_fence(self, items: tuple[PlanItem, ...]) -> Refusal | None:
         return fence.check(items, "px4")
 
-    def load_fence(self, items: tuple[PlanItem, ...]) -> None:
-        self._note("load_fence", items)
-
     def check_rally(self, items: tuple[PlanItem, ...]) -> Refusal | None:
         return rally.check(items)
 
-    def load_rally(self, items: tuple[PlanItem, ...]) -> None:
-        self._note("load_rally", items)
-
-    def enable_fence(self, choice: int) -> Result:
-        return self._note("enable_fence", choice)
-
-    def check_arming(self) -> Result:
-        return self._note("check_arming")
-
-    def terminate(self, on: bool) -> Result:
-        return self._note("terminate", on)
-
-    def calibrate(self, parameters: tuple[float, ...]) -> Result | None:
-        return self._note("calibrate", parameters)
-
-    def set_servo(self, servo: float, pulse_us: float) -> Result:
-        return self._note("set_servo", servo, pulse_us)
-
-    def repeat_servo(self, servo: float, pulse_us: float, count: float, period_s: float) -> Result:
-        return self._note("repeat_servo", servo, pulse_us, count, period_s)
-
-    def set_relay(self, relay: float, state: float) -> Result:
-        return self._note("set_relay", relay, state)
-
-    def repeat_relay(self, relay: float, count: float, period_s: float) -> Result:
-        return self._note("repeat_relay", relay, count, period_s)
-
-    def calibrate_compass_by_yaw(self) -> Result:
-        return self._note("calibrate_compass_by_yaw")
-
     def log_download(self, running: bool) -> None:
         self.downloads.append(running)
-
-    def calibration_position(self, position: float) -> Result:
-        return self._note("calibration_position", position)
-
-    def test_motor(self, seconds: float) -> Result:
-        return self._note("test_motor", seconds)
-
-    def reset_parameters(self) -> None:
-        self._note("reset_parameters")
-
-    def reboot(self) -> Result:
-        return self._note("reboot")
-
-    def gcs_heard(self, wall_ns: int) -> None:
-        self._note("gcs_heard", wall_ns)
 
     def wall(self, wall_ns: int) -> None:
         pass
@@ -384,7 +268,6 @@ class Bench:
         self.now_ns = 0
         self.logs: list[Log] = []
         self.sequence = 0
-        self.inbox: list[m.Message] = []
         self.raw = b""
 
     def send(

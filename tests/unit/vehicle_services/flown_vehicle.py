@@ -43,7 +43,6 @@ class Flown(Bench):
         self.now_ns = 0
         self.logs = []
         self.sequence = 0
-        self.inbox = []
         self.raw = b""
 
     def mode(self, name: str) -> None:
