@@ -152,7 +152,7 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
         "gcs/gate/machine/gate.py Gate._demand: after < before -> after <= before",
     ),
     "asked in STALE of a breach, which needs control, and so a state to return to": (
-        "gcs/gate/machine/guards.py _guards_of_memory: with None -> without",
+        "gcs/gate/machine/guards.py Guard: with None -> without",
     ),
     "it is read in FLYING_MISSION only, and the start of a mission sets it": (
         "gcs/gate/machine/memory.py Memory: False -> True #6",

@@ -19,9 +19,11 @@ from dataclasses import dataclass, replace
 from typing import Final, TypeAlias, TypeVar
 
 from gcs.gate.effects import OutcomeKind
+from gcs.gate.machine.actions import Action
 from gcs.gate.machine.events import REQUESTS, Event
-from gcs.gate.machine.rules import STAY, Action, Branch, Cell, End, Reply
+from gcs.gate.machine.rows.row import STAY, Branch, Cell
 from gcs.gate.machine.sentences import ENDED, REFUSED
+from gcs.gate.machine.turn import End, Reply
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from tests.mutants.mutant import Kind

@@ -11,7 +11,7 @@ from gcs.gate.inputs import Requested, VerifierChanged
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.gate import Gate, ImpossibleError
 from gcs.gate.machine.memory import GATE, Memory
-from gcs.gate.machine.rules import Cell
+from gcs.gate.machine.rows.row import Cell
 from gcs.gate.machine.table import Table
 from gcs.gate.states import State
 from tests.proof.alphabet import LATE_ID, OTHER, OWNER, PENDING_ID, TASK_ID, Letter

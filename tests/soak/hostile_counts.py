@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.gate import Gate
-from gcs.gate.machine.rules import Branch
+from gcs.gate.machine.rows.row import Branch
 from gcs.gate.states import State
 
 Cell: TypeAlias = tuple[State, Event]

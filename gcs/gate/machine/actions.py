@@ -1,4 +1,4 @@
-"""What each `Action` of the table does.
+"""The actions: what the branches of the table do.
 
 Goals, control, the fence and what is noted are here; `commanding.py` and `holding.py` have the
 actions that send commands.
@@ -7,10 +7,10 @@ actions that send commands.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from types import MappingProxyType
-from typing import Final
+from enum import StrEnum
+from typing import Final, Self
 
 from gcs.enu_text import place
 from gcs.frames import Vec3
@@ -19,8 +19,7 @@ from gcs.gate.machine import commanding, holding, streaming, verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import Goal, Task
 from gcs.gate.machine.progress import within_arrival
-from gcs.gate.machine.rules import Action, End
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.turn import End, Turn
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo, SwitchFence
 from gcs.gate.states import Control, FlightMode, LandedState, State
@@ -228,55 +227,70 @@ def _note_force_request(turn: Turn) -> None:
     turn.say(Level.WARNING, "ask for the forced disarm again within 5 s to have it")
 
 
-ACTIONS: Final[Mapping[Action, Callable[[Turn], None]]] = MappingProxyType(
-    {
-        Action.VERIFY_GOAL: _verify_goal,
-        Action.FLY_GOAL: _fly_goal,
-        Action.REFUSE_GOAL: _refuse_goal,
-        Action.HOLD_AT_GOAL: _hold_at_goal,
-        Action.TAKE_CONTROL: _take_control,
-        Action.TAKE_CONTROL_ON_WAY_BACK: _take_control_on_way_back,
-        Action.TAKE_CONTROL_AT_TOP: _take_control_at_top,
-        Action.FLY_TO_TOP: _fly_to_top,
-        Action.ASK_GUIDED: _ask_guided,
-        Action.SET_GUIDED: commanding.set_guided,
-        Action.GAIN_CONTROL: _gain_control,
-        Action.RELEASE_CONTROL: _release_control,
-        Action.ARM: commanding.arm,
-        Action.DISARM: commanding.disarm,
-        Action.FORCE_DISARM: commanding.force_disarm,
-        Action.TAKE_OFF: commanding.take_off,
-        Action.SEND_WAITING: commanding.send_waiting,
-        Action.LAND: commanding.land,
-        Action.LAND_MODE_ONLY: commanding.land_mode_only,
-        Action.RETURN: commanding.return_home,
-        Action.HOLD: holding.hold,
-        Action.HOLD_UNASKED: holding.hold_unasked,
-        Action.HOLD_MODE_ONLY: holding.hold_mode_only,
-        Action.REPEAT_HOLD: holding.repeat_hold,
-        Action.CONFIRM_HOLD: holding.confirm_hold,
-        Action.STOP_AWAITING_MODE: holding.stop_awaiting_mode,
-        Action.VERIFY_HELD_POINT: holding.verify_held_point,
-        Action.BRAKE: holding.brake,
-        Action.TAKE_PHOTO: commanding.photo,
-        Action.START_MISSION: commanding.start_mission,
-        Action.SWITCH_FENCE: _switch_fence,
-        Action.START_GRACE: holding.start_grace,
-        Action.STOP_STREAM: holding.stop_stream,
-        Action.FORGET_VEHICLE: _forget_vehicle,
-        Action.FORGET_INTERRUPTED: _forget_interrupted,
-        Action.AWAIT_DISARM: _await_disarm,
-        Action.AWAIT_LANDING: _await_landing,
-        Action.AWAIT_POSITION: _await_position,
-        Action.DROP_DEADLINE: _drop_deadline,
-        Action.NOTE_LIFT_OFF: _note_lift_off,
-        Action.NOTE_FORCE_REQUEST: _note_force_request,
-        Action.BEGIN_STREAM: streaming.begin,
-        Action.FLY_SAMPLE: streaming.fly,
-        Action.NOTE_SAMPLE: streaming.note,
-        Action.NOTE_GOOD_SAMPLE: streaming.note_good,
-        Action.HOLD_IN_PLACE: streaming.hold_in_place,
-        Action.END_STREAM: streaming.end,
-    }
-)
-"""A test asserts that every `Action` is here."""
+# ------------------------------------------------------------------------------ their names
+
+
+def _do(text: str, perform: Callable[[Turn], None]) -> tuple[str, Callable[[Turn], None]]:
+    """A member of `Action`; in a bare pair the types would not be checked."""
+    return text, perform
+
+
+class Action(StrEnum):
+    """What a branch does: its text in the printed table, and the function that emits effects and
+    changes the gate's memory."""
+
+    perform: Callable[[Turn], None]
+
+    def __new__(cls, text: str, perform: Callable[[Turn], None]) -> Self:
+        member = str.__new__(cls, text)
+        member._value_ = text
+        member.perform = perform
+        return member
+
+    VERIFY_GOAL = _do("verify the pending goal", _verify_goal)
+    FLY_GOAL = _do("accept the goal and fly it", _fly_goal)
+    REFUSE_GOAL = _do("refuse the goal", _refuse_goal)
+    HOLD_AT_GOAL = _do("hold at the goal", _hold_at_goal)
+    TAKE_CONTROL = _do("stream the present position", _take_control)
+    TAKE_CONTROL_ON_WAY_BACK = _do("stream the way back inside", _take_control_on_way_back)
+    TAKE_CONTROL_AT_TOP = _do("stream the top of the climb", _take_control_at_top)
+    FLY_TO_TOP = _do("fly to the top of the climb", _fly_to_top)
+    ASK_GUIDED = _do("command guided", _ask_guided)
+    SET_GUIDED = _do("command guided on the ground", commanding.set_guided)
+    GAIN_CONTROL = _do("control is ours", _gain_control)
+    RELEASE_CONTROL = _do("let control go", _release_control)
+    ARM = _do("command arm", commanding.arm)
+    DISARM = _do("command disarm", commanding.disarm)
+    FORCE_DISARM = _do("command forced disarm", commanding.force_disarm)
+    TAKE_OFF = _do("command take-off", commanding.take_off)
+    SEND_WAITING = _do("send the command that waited", commanding.send_waiting)
+    LAND = _do("command land", commanding.land)
+    LAND_MODE_ONLY = _do("command land unseen", commanding.land_mode_only)
+    RETURN = _do("command return", commanding.return_home)
+    HOLD = _do("command hold", holding.hold)
+    HOLD_UNASKED = _do("command hold unasked", holding.hold_unasked)
+    HOLD_MODE_ONLY = _do("command hold unseen", holding.hold_mode_only)
+    REPEAT_HOLD = _do("command hold again", holding.repeat_hold)
+    CONFIRM_HOLD = _do("hold is confirmed", holding.confirm_hold)
+    STOP_AWAITING_MODE = _do("no mode is awaited any more", holding.stop_awaiting_mode)
+    VERIFY_HELD_POINT = _do("verify the held point anew", holding.verify_held_point)
+    BRAKE = _do("send the brake setpoint", holding.brake)
+    TAKE_PHOTO = _do("command photo", commanding.photo)
+    START_MISSION = _do("command mission start", commanding.start_mission)
+    SWITCH_FENCE = _do("switch the fence", _switch_fence)
+    START_GRACE = _do("keep the verified stream for its grace", holding.start_grace)
+    STOP_STREAM = _do("stop the stream", holding.stop_stream)
+    FORGET_VEHICLE = _do("forget the vehicle", _forget_vehicle)
+    FORGET_INTERRUPTED = _do("forget what was interrupted", _forget_interrupted)
+    AWAIT_DISARM = _do("wait shortly for disarm", _await_disarm)
+    AWAIT_LANDING = _do("wait for the landing again", _await_landing)
+    AWAIT_POSITION = _do("wait for a position", _await_position)
+    DROP_DEADLINE = _do("let it take as long as it takes", _drop_deadline)
+    NOTE_LIFT_OFF = _do("note the lift-off", _note_lift_off)
+    NOTE_FORCE_REQUEST = _do("note the first asking", _note_force_request)
+    BEGIN_STREAM = _do("the stream begins", streaming.begin)
+    FLY_SAMPLE = _do("fly the sample", streaming.fly)
+    NOTE_SAMPLE = _do("note that it came", streaming.note)
+    NOTE_GOOD_SAMPLE = _do("note that it is good again", streaming.note_good)
+    HOLD_IN_PLACE = _do("hold in place of the stream", streaming.hold_in_place)
+    END_STREAM = _do("end the stream and hold in place", streaming.end)

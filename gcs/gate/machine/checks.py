@@ -1,15 +1,14 @@
-"""What each `Check` of the table does: it returns the refusal, or None where it passes."""
+"""The checks: conditions for accepting a request, which give the refusal where they fail."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
-from typing import Final
+from collections.abc import Callable
+from enum import StrEnum
+from typing import Self
 
 from gcs.gate.condition import Condition, Severity
 from gcs.gate.machine import verifying
 from gcs.gate.machine.pacing import may_have
-from gcs.gate.machine.rules import Check
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code, Refusal
 
@@ -66,17 +65,31 @@ def _position(turn: Turn) -> Refusal | None:
     return verifying.position(turn, may_have(turn, None) if flies else ())
 
 
-CHECKS: Final[Mapping[Check, Callable[[Turn], Refusal | None]]] = MappingProxyType(
-    {
-        Check.SEVERITY: _severity,
-        Check.SEVERITY_BUT_FENCE: _severity_but_fence,
-        Check.RECORDER: _recorder,
-        Check.ARMED: _armed,
-        Check.ON_GROUND: _on_ground,
-        Check.POSITION: _position,
-        Check.CLIMB: verifying.climb,
-        Check.MISSION: _mission,
-        Check.HOME_AND_FENCE: _home_and_fence,
-    }
-)
-"""A test asserts that every `Check` is here."""
+def _refused(
+    text: str, refusal: Callable[[Turn], Refusal | None]
+) -> tuple[str, Callable[[Turn], Refusal | None]]:
+    """A member of `Check`; in a bare pair the types would not be checked."""
+    return text, refusal
+
+
+class Check(StrEnum):
+    """A condition for accepting a request: its text in the printed table, and the function that
+    gives the refusal, or None where it passes."""
+
+    refusal: Callable[[Turn], Refusal | None]
+
+    def __new__(cls, text: str, refusal: Callable[[Turn], Refusal | None]) -> Self:
+        member = str.__new__(cls, text)
+        member._value_ = text
+        member.refusal = refusal
+        return member
+
+    SEVERITY = _refused("severity permits motion", _severity)
+    RECORDER = _refused("the recorder runs where policy asks for it", _recorder)
+    ARMED = _refused("it is armed", _armed)
+    ON_GROUND = _refused("it stands on the ground", _on_ground)
+    SEVERITY_BUT_FENCE = _refused("nothing but the fence forbids motion", _severity_but_fence)
+    POSITION = _refused("the present position clears", _position)
+    CLIMB = _refused("the climb clears", verifying.climb)
+    MISSION = _refused("a verified mission is on board", _mission)
+    HOME_AND_FENCE = _refused("home and fence are known", _home_and_fence)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.memory import Memory
 from gcs.gate.machine.rows.requests_to_fly import arm
 from gcs.gate.machine.turn import Turn
@@ -24,7 +23,7 @@ def why_not_arm(policy: Policy, memory: Memory, now_ns: int) -> Refusal | None:
             Code.ALREADY_FLYING, f"the vehicle is not on the ground: {memory.state.name}"
         )
     for check in arm.needs:
-        refusal = CHECKS[check](turn)
+        refusal = check.refusal(turn)
         if refusal is not None:
             return refusal
     return None

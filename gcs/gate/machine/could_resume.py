@@ -7,9 +7,8 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.questions.back_inside import WayBack
-from gcs.gate.machine.checks import CHECKS
+from gcs.gate.machine.checks import Check
 from gcs.gate.machine.memory import Memory
-from gcs.gate.machine.rules import Check
 from gcs.gate.machine.sentences import REFUSED, no_fresh_position
 from gcs.gate.machine.turn import Turn
 from gcs.gate.machine.verifying import home_or_fence_unknown
@@ -33,9 +32,9 @@ def why_not_resume(policy: Policy, memory: Memory, now_ns: int) -> Refusal | Non
         return no_fresh_position(memory)
     judged = memory.verifier.hold_point(memory.pos_ned, AT_REST, (), floor_applies=True)
     if not isinstance(judged, Refusal):
-        return CHECKS[Check.SEVERITY](turn)
+        return Check.SEVERITY.refusal(turn)
     if isinstance(memory.verifier.way_back(memory.pos_ned, AT_REST), WayBack):
-        return CHECKS[Check.SEVERITY_BUT_FENCE](turn)
+        return Check.SEVERITY_BUT_FENCE.refusal(turn)
     return judged
 
 

@@ -26,16 +26,13 @@ from gcs.gate.effects import (
     Transition,
 )
 from gcs.gate.inputs import ConditionChanged, Input, OperatorLost, Requested, StreamSeen, Tick
-from gcs.gate.machine.actions import ACTIONS
-from gcs.gate.machine.checks import CHECKS
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.guards import GUARDS
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.observe import events_from
 from gcs.gate.machine.pacing import towards, way_is_known
-from gcs.gate.machine.rules import BACK, STAY, Branch, Next, Reply
+from gcs.gate.machine.rows.row import BACK, STAY, Branch, Next
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
-from gcs.gate.machine.turn import CommandDraft, Draft, SampleDraft, SetpointDraft, Turn
+from gcs.gate.machine.turn import CommandDraft, Draft, Reply, SampleDraft, SetpointDraft, Turn
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, FlightMode, LandedState, State
@@ -236,7 +233,7 @@ class Gate:
         turn = self._turn
         branch = self._branch(event)
         for check in branch.needs:
-            refusal = CHECKS[check](turn)
+            refusal = check.refusal(turn)
             if refusal is not None:
                 assert turn.requested is not None
                 turn.verdict(turn.requested, Ruling.REFUSED, refusal)
@@ -248,7 +245,7 @@ class Gate:
         elif branch.ends is not None:
             turn.end(branch.ends)
         for action in branch.do:
-            ACTIONS[action](turn)
+            action.perform(turn)
         self._enter(branch.to, event)
         while turn.raised:
             self._fire(turn.raised.pop(0))
@@ -256,7 +253,7 @@ class Gate:
     def _branch(self, event: Event) -> Branch:
         state = self._turn.memory.state
         for branch in self._table[state, event]:
-            if all(GUARDS[guard](self._turn) for guard in branch.when):
+            if all(guard.holds(self._turn) for guard in branch.when):
                 return branch
         raise ImpossibleError(f"{event} in {state.name}")
 

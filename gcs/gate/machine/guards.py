@@ -1,4 +1,4 @@
-"""When each `Guard` of the table holds.
+"""The guards: conditions of the table's branches, and when each holds.
 
 A guard does not change the gate's memory.  Those that ask the verifier, and
 `CLIMB_ENDED_ELSEWHERE`, leave the reason of a refusal in the turn, for its sentence.
@@ -7,15 +7,15 @@ A guard does not change the gate's memory.  Those that ask the verifier, and
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from enum import StrEnum
 from types import MappingProxyType
-from typing import Final
+from typing import Final, Self
 
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind
 from gcs.gate.machine import progress, streaming, verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, Memory
-from gcs.gate.machine.rules import Guard
 from gcs.gate.machine.turn import Turn
 from gcs.gate.requests import SetMode
 from gcs.gate.states import Control, FlightMode, State
@@ -111,95 +111,136 @@ def _grace_over(turn: Turn) -> bool:
     return until_ns is not None and turn.now_ns >= until_ns
 
 
-def _guards_of_memory() -> dict[Guard, Callable[[Memory], bool]]:
-    """The guards that need neither the time nor the policy."""
-    return {
-        Guard.HEARD_BEFORE: lambda m: m.heard_before,
-        Guard.LOST_IN_FLIGHT: lambda m: m.lost_in_flight,
-        Guard.NO_POSITION_YET: lambda m: m.pos_ned is None,
-        Guard.AIRBORNE: lambda m: m.airborne,
-        Guard.NOT_AIRBORNE: lambda m: not m.airborne,
-        Guard.ON_GROUND: lambda m: m.on_ground,
-        Guard.ARMED: lambda m: m.armed,
-        Guard.DISARMED: lambda m: not m.armed,
-        Guard.LIFTED_OFF: lambda m: m.lifted,
-        Guard.IN_CONTROL: lambda m: m.control is Control.OURS,
-        Guard.TAKING_CONTROL: lambda m: m.control is Control.TAKING,
-        Guard.TASK_UNDER_WAY: lambda m: m.task is not None,
-        Guard.GOAL_PENDING: lambda m: m.pending is not None,
-        Guard.GOAL_ACTIVE: lambda m: m.goal is not None,
-        Guard.HOLD_AWAITED: lambda m: m.hold_again_ns is not None,
-        Guard.HELD_IN_PLACE: lambda m: m.hold is not None,
-        Guard.HOLD_REQUESTED: lambda m: m.hold_requested,
-        Guard.MISSION_AT_LAST_ITEM: lambda m: m.mission_over,
-        Guard.IN_GRACE: lambda m: m.grace_until_ns is not None,
-        Guard.RETURNS_TO_STATE: lambda m: m.back_to is not None,
-        Guard.RETURNS_TO_FLIGHT: lambda m: m.back_to not in (None, State.HOLDING),
-        Guard.OPERATOR_LOST: lambda m: m.operator_lost,
-        Guard.PHOTO_TAKEN: lambda m: m.photo_ok,
-    }
+def _when(text: str, holds: Callable[[Turn], bool]) -> tuple[str, Callable[[Turn], bool]]:
+    """A member of `Guard`; in a bare pair the types would not be checked."""
+    return text, holds
 
 
-def _of_memory(holds: Callable[[Memory], bool]) -> Callable[[Turn], bool]:
-    return lambda turn: holds(turn.memory)
+def _remembered(text: str, holds: Callable[[Memory], bool]) -> tuple[str, Callable[[Turn], bool]]:
+    """A guard that needs neither the time nor the policy."""
+    return text, lambda turn: holds(turn.memory)
 
 
-GUARDS: Final[Mapping[Guard, Callable[[Turn], bool]]] = MappingProxyType(
-    {
-        **{guard: _of_memory(holds) for guard, holds in _guards_of_memory().items()},
-        Guard.SURELY_ON_GROUND: _surely_on_ground,
-        Guard.DISARMED_AND_IDLE: _disarmed_and_idle,
-        Guard.TAKE_OFF_MAY_COME_LATE: _take_off_may_come_late,
-        Guard.GUIDED_MAY_COME_LATE: lambda turn: turn.now_ns < turn.memory.guided_until_ns,
-        Guard.TASK_IS_ARM: _task_in(Event.ARM),
-        Guard.TASK_IS_TAKE_OFF: _task_in(Event.TAKE_OFF),
-        Guard.TASK_IS_CONTROL: _task_in(Event.CONTROL),
-        Guard.TASK_WAITS: lambda turn: (
-            turn.memory.task is not None and turn.memory.task.waiting is not None
+class Guard(StrEnum):
+    """A condition of a branch: its text in the printed table (`gcs fsa`), and when it holds."""
+
+    holds: Callable[[Turn], bool]
+
+    def __new__(cls, text: str, holds: Callable[[Turn], bool]) -> Self:
+        member = str.__new__(cls, text)
+        member._value_ = text
+        member.holds = holds
+        return member
+
+    HEARD_BEFORE = _remembered("a vehicle was heard before", lambda m: m.heard_before)
+    LOST_IN_FLIGHT = _remembered("we flew it when it was heard last", lambda m: m.lost_in_flight)
+    NO_POSITION_YET = _remembered("it has told no position yet", lambda m: m.pos_ned is None)
+    AIRBORNE = _remembered("it flies", lambda m: m.airborne)
+    NOT_AIRBORNE = _remembered("it is not known to fly", lambda m: not m.airborne)
+    ON_GROUND = _remembered("it stands on the ground", lambda m: m.on_ground)
+    ARMED = _remembered("it is armed", lambda m: m.armed)
+    DISARMED = _remembered("it is disarmed", lambda m: not m.armed)
+    SURELY_ON_GROUND = _when("it stands, and no take-off can be under way", _surely_on_ground)
+    DISARMED_AND_IDLE = _when("it is disarmed and nothing is under way", _disarmed_and_idle)
+    LIFTED_OFF = _remembered("it had lifted off", lambda m: m.lifted)
+    TAKE_OFF_MAY_COME_LATE = _when("our own take-off comes late", _take_off_may_come_late)
+    IN_CONTROL = _remembered("we have control", lambda m: m.control is Control.OURS)
+    TAKING_CONTROL = _remembered("control is being taken", lambda m: m.control is Control.TAKING)
+    TASK_UNDER_WAY = _remembered("a request is under way", lambda m: m.task is not None)
+    TASK_IS_ARM = _when("the request is to arm", _task_in(Event.ARM))
+    TASK_IS_TAKE_OFF = _when("the request is to take off", _task_in(Event.TAKE_OFF))
+    TASK_IS_CONTROL = _when("the request is for guided mode", _task_in(Event.CONTROL))
+    TASK_WAITS = _when(
+        "the request's command waits for a mode or a position",
+        lambda turn: turn.memory.task is not None and turn.memory.task.waiting is not None,
+    )
+    TASK_ENDS_HELD = _when("the request is to hold or abort", _task_ends_held)
+    TASK_ENDS_LANDED = _when(
+        "the request is to come down, and it stands",
+        _task_in(Event.LAND, Event.RETURN, Event.MISSION),
+    )
+    TASK_ENDS_DISARMED = _when(
+        "the request ends when disarmed",
+        _task_in(
+            Event.LAND, Event.RETURN, Event.MISSION, Event.DISARM, Event.FORCE_DISARM, Event.ABORT
         ),
-        Guard.TASK_ENDS_HELD: _task_ends_held,
-        Guard.TASK_ENDS_LANDED: _task_in(Event.LAND, Event.RETURN, Event.MISSION),
-        Guard.TASK_ENDS_DISARMED: _task_in(
-            Event.LAND,
-            Event.RETURN,
-            Event.MISSION,
-            Event.DISARM,
-            Event.FORCE_DISARM,
-            Event.ABORT,
-        ),
-        Guard.MISSION_GOES_ON: _mission_goes_on,
-        Guard.ARRIVED: progress.arrived,
-        Guard.AT_HEIGHT: progress.at_height,
-        Guard.NEARLY_AT_HEIGHT: progress.nearly_at_height,
-        Guard.CLIMB_ENDED_ELSEWHERE: progress.climb_ended_elsewhere,
-        Guard.CLIMBS_TOO_HIGH: progress.climbs_too_high,
-        Guard.POSITION_CLEARS: lambda turn: verifying.position(turn) is None,
-        Guard.WAY_BACK_CLEARS: lambda turn: verifying.way_back(turn) is not None,
-        Guard.POSITION_TOO_OLD: lambda turn: turn.stale,
-        Guard.TOP_CLEARS: lambda turn: verifying.top(turn) is None,
-        Guard.RETURN_PATH_CLEARS: lambda turn: verifying.return_path(turn) is None,
-        Guard.BLOCKED_RETURN_FORWARDED: lambda turn: turn.policy.rtl_blocked == "forward",
-        Guard.BLOCKED_RETURN_LANDS: lambda turn: turn.policy.rtl_blocked == "land",
-        Guard.RETARGET_ALLOWED: _retarget_allowed,
-        Guard.FENCE_SWITCHABLE: lambda turn: turn.policy.fence_switchable,
-        Guard.FORCE_DISARM_FORBIDDEN: lambda turn: not turn.policy.allow_force_disarm,
-        Guard.FORCE_DISARM_UNCONFIRMED: _force_disarm_unconfirmed,
-        Guard.SEVERITY_PERMITS: lambda turn: turn.severity < Severity.HOLD,
-        Guard.MODE_AWAITED: _mode_awaited,
-        Guard.MODE_FITS_STATE: _mode_fits_state,
-        Guard.GRACE_OVER: _grace_over,
-        Guard.MODE_GUIDED: _mode(FlightMode.GUIDED),
-        Guard.STANDS_IN_GUIDED: _stands_in_guided,
-        Guard.MODE_TAKE_OFF: _mode(FlightMode.TAKEOFF),
-        Guard.MODE_RETURN: _mode(FlightMode.RETURN),
-        Guard.MODE_LAND: _mode(FlightMode.LAND),
-        Guard.OWN_STREAM: streaming.own_stream,
-        Guard.INTERRUPTED_STREAM: streaming.interrupted_stream,
-        Guard.SAMPLE_CLEARS: lambda turn: verifying.given_sample(turn) is None,
-        Guard.SAMPLES_GOOD_AGAIN: streaming.samples_good_again,
-        Guard.FLOWN_SAMPLE_CLEARS_NO_MORE: streaming.clears_no_more,
-        Guard.STREAM_SILENT: streaming.silent,
-        Guard.STREAM_OVER: streaming.over,
-    }
-)
-"""A test asserts that every `Guard` is here."""
+    )
+    MISSION_GOES_ON = _when("the mission lifts off again", _mission_goes_on)
+    GOAL_PENDING = _remembered("a goal is pending", lambda m: m.pending is not None)
+    GOAL_ACTIVE = _remembered("a goal is being flown", lambda m: m.goal is not None)
+    ARRIVED = _when("it arrived", progress.arrived)
+    AT_HEIGHT = _when("it reached the height", progress.at_height)
+    NEARLY_AT_HEIGHT = _when("it has nearly reached the height", progress.nearly_at_height)
+    CLIMB_ENDED_ELSEWHERE = _when("the climb ended elsewhere", progress.climb_ended_elsewhere)
+    CLIMBS_TOO_HIGH = _when("it climbs above the height", progress.climbs_too_high)
+    RETURNS_TO_FLIGHT = _remembered(
+        "a position too old interrupted its flight",
+        lambda m: m.back_to not in (None, State.HOLDING),
+    )
+    OPERATOR_LOST = _remembered("the operator is lost", lambda m: m.operator_lost)
+    POSITION_CLEARS = _when(
+        "the present position clears", lambda turn: verifying.position(turn) is None
+    )
+    WAY_BACK_CLEARS = _when(
+        "it is outside, and the way back inside clears",
+        lambda turn: verifying.way_back(turn) is not None,
+    )
+    POSITION_TOO_OLD = _when("the position is too old", lambda turn: turn.stale)
+    TOP_CLEARS = _when("the way to the top clears", lambda turn: verifying.top(turn) is None)
+    RETURN_PATH_CLEARS = _when(
+        "the return path clears", lambda turn: verifying.return_path(turn) is None
+    )
+    BLOCKED_RETURN_FORWARDED = _when(
+        "policy forwards blocked returns", lambda turn: turn.policy.rtl_blocked == "forward"
+    )
+    BLOCKED_RETURN_LANDS = _when(
+        "policy lands on blocked returns", lambda turn: turn.policy.rtl_blocked == "land"
+    )
+    RETARGET_ALLOWED = _when("policy lets the goal's owner replace it", _retarget_allowed)
+    FENCE_SWITCHABLE = _when(
+        "policy lets the fence be switched", lambda turn: turn.policy.fence_switchable
+    )
+    FORCE_DISARM_FORBIDDEN = _when(
+        "policy forbids disarming in the air", lambda turn: not turn.policy.allow_force_disarm
+    )
+    FORCE_DISARM_UNCONFIRMED = _when("it was asked for only once", _force_disarm_unconfirmed)
+    SEVERITY_PERMITS = _when("severity permits motion", lambda turn: turn.severity < Severity.HOLD)
+    HOLD_AWAITED = _remembered(
+        "hold is commanded and not shown yet", lambda m: m.hold_again_ns is not None
+    )
+    HELD_IN_PLACE = _remembered("a held point is its goal", lambda m: m.hold is not None)
+    HOLD_REQUESTED = _remembered("it was asked for", lambda m: m.hold_requested)
+    MODE_AWAITED = _when("a commanded mode is not shown yet", _mode_awaited)
+    MODE_FITS_STATE = _when("the mode belongs to the state", _mode_fits_state)
+    MODE_GUIDED = _when("the mode is guided", _mode(FlightMode.GUIDED))
+    STANDS_IN_GUIDED = _when(
+        "guided is asked for by its name, and it stands still in it", _stands_in_guided
+    )
+    MODE_TAKE_OFF = _when("the mode is take-off", _mode(FlightMode.TAKEOFF))
+    MODE_RETURN = _when("the mode is return", _mode(FlightMode.RETURN))
+    MODE_LAND = _when("the mode is land", _mode(FlightMode.LAND))
+    GUIDED_MAY_COME_LATE = _when(
+        "our own guided command comes late", lambda turn: turn.now_ns < turn.memory.guided_until_ns
+    )
+    MISSION_AT_LAST_ITEM = _remembered(
+        "the mission reached its last item", lambda m: m.mission_over
+    )
+    IN_GRACE = _remembered(
+        "a verified stream is in its grace", lambda m: m.grace_until_ns is not None
+    )
+    GRACE_OVER = _when("the grace is over", _grace_over)
+    RETURNS_TO_STATE = _remembered("it was interrupted in flight", lambda m: m.back_to is not None)
+    PHOTO_TAKEN = _remembered("the picture was taken", lambda m: m.photo_ok)
+    OWN_STREAM = _when("it is the stream of this client", streaming.own_stream)
+    INTERRUPTED_STREAM = _when(
+        "it interrupted the stream of this client", streaming.interrupted_stream
+    )
+    SAMPLE_CLEARS = _when("the sample clears", lambda turn: verifying.given_sample(turn) is None)
+    SAMPLES_GOOD_AGAIN = _when(
+        "the samples are good, and have been long enough", streaming.samples_good_again
+    )
+    FLOWN_SAMPLE_CLEARS_NO_MORE = _when(
+        "the sample that is flown clears no more", streaming.clears_no_more
+    )
+    STREAM_SILENT = _when("no sample came for the dead-man's time", streaming.silent)
+    STREAM_OVER = _when("no sample came for too long", streaming.over)

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gcs.gate.machine.events import REQUESTS, Event
-from gcs.gate.machine.rows.row import COLUMNS
-from gcs.gate.machine.rules import BACK, BACK_STATES, STAY, Branch, Cell, Reply
+from gcs.gate.machine.rows.row import BACK, BACK_STATES, COLUMNS, STAY, Branch, Cell
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
+from gcs.gate.machine.turn import Reply
 from gcs.gate.states import State
 
 

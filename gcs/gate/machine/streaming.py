@@ -13,9 +13,8 @@ from gcs.gate.effects import Level, OutcomeKind, StreamVerdict
 from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, FlownSample, Goal
-from gcs.gate.machine.rules import End
 from gcs.gate.machine.sentences import no_fresh_position
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.turn import End, Turn
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
 

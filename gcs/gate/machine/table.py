@@ -22,10 +22,9 @@ from gcs.gate.machine.rows.modes import MODE_ROWS
 from gcs.gate.machine.rows.position import POSITION_ROWS
 from gcs.gate.machine.rows.requests_to_fly import REQUEST_TO_FLY_ROWS
 from gcs.gate.machine.rows.requests_to_stop import REQUEST_TO_STOP_ROWS
-from gcs.gate.machine.rows.row import Row
+from gcs.gate.machine.rows.row import Cell, Row
 from gcs.gate.machine.rows.streams import STREAM_ROWS
 from gcs.gate.machine.rows.time import TIME_ROWS
-from gcs.gate.machine.rules import Cell
 from gcs.gate.states import State
 
 Table: TypeAlias = Mapping[tuple[State, Event], Cell]

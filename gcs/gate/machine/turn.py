@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
@@ -29,7 +30,6 @@ from gcs.gate.effects import (
 from gcs.gate.inputs import Requested, StreamSeen
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import GATE, SECOND_NS, Goal, Memory, Task
-from gcs.gate.machine.rules import End, Reply
 from gcs.gate.machine.sentences import ENDED, done_at_once, not_shown, refusal_of
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
@@ -89,6 +89,33 @@ REFUSED_STREAM_LINE: Final = "Stream refused "
 
 SAID: Final = frozenset({Code.SUPERSEDED, Code.OPERATOR, Code.OPERATOR_LOST, Code.FENCE_BREACH})
 """Reasons for an end that are said where they come up."""
+
+
+class Reply(Enum):
+    """What a branch replies to a request that it does not refuse.
+
+    NONE is for events that are not requests.  PENDING gives no verdict yet: the request waits
+    for the next tick.
+    """
+
+    NONE = "none"
+    ACCEPTED = "accepted"
+    DONE = "accepted, complete at once"
+    PENDING = "pending until the tick"
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """The outcome of the request under way; a goal that is still pending is refused with the code.
+
+    `judged` True: the code and the sentence are those of the refusal that caused the event.
+    `goes_on` True: nobody waits for it any more, and what it commanded goes on all the same.
+    """
+
+    kind: OutcomeKind
+    code: Code | None = None
+    judged: bool = False
+    goes_on: bool = False
 
 
 class Turn:

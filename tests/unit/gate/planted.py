@@ -9,9 +9,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from gcs.gate.effects import OutcomeKind
+from gcs.gate.machine.actions import Action
+from gcs.gate.machine.checks import Check
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.rules import Action, Branch, Cell, Check, End, Guard, Reply
+from gcs.gate.machine.guards import Guard
+from gcs.gate.machine.rows.row import Branch, Cell
 from gcs.gate.machine.table import TABLE
+from gcs.gate.machine.turn import End, Reply
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 

@@ -19,7 +19,7 @@ from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind
 from gcs.gate.machine import commanding, gate
 from gcs.gate.machine.events import Event
-from gcs.gate.machine.rules import Branch
+from gcs.gate.machine.rows.row import Branch
 from gcs.gate.machine.table import TABLE
 from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code

@@ -12,15 +12,15 @@ from click.testing import CliRunner
 import gcs
 from gcs.cli.fsa import fsa
 from gcs.gate.machine import render, table
-from gcs.gate.machine.actions import ACTIONS
-from gcs.gate.machine.checks import CHECKS
+from gcs.gate.machine.actions import Action
+from gcs.gate.machine.checks import Check
 from gcs.gate.machine.events import REQUESTS, Event, event_of
-from gcs.gate.machine.guards import GUARDS
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import cannot_happen, unchanged
-from gcs.gate.machine.rows.row import COLUMNS, during, row
-from gcs.gate.machine.rules import Action, Branch, Check, Guard, Reply
+from gcs.gate.machine.rows.row import COLUMNS, Branch, during, row
 from gcs.gate.machine.sentences import ENDED, REFUSED
 from gcs.gate.machine.table import ROWS, STREAMS, TABLE, Streams
+from gcs.gate.machine.turn import Reply
 from gcs.gate.requests import Land, SetMode, TakeControl
 from gcs.gate.states import FlightMode, State
 
@@ -62,10 +62,10 @@ def test_the_last_branch_of_a_cell_has_no_condition_and_no_other_has_none() -> N
             assert all(branch.when for branch in cell[:-1]), where
 
 
-def test_every_word_has_a_meaning_and_is_used() -> None:
-    assert set(GUARDS) == set(Guard) == {guard for b in BRANCHES for guard in b.when}
-    assert set(CHECKS) == set(Check) == {check for b in BRANCHES for check in b.needs}
-    assert set(ACTIONS) == set(Action) == {do for b in BRANCHES for do in b.do}
+def test_every_word_is_used() -> None:
+    assert set(Guard) == {guard for b in BRANCHES for guard in b.when}
+    assert set(Check) == {check for b in BRANCHES for check in b.needs}
+    assert set(Action) == {do for b in BRANCHES for do in b.do}
 
 
 @pytest.mark.parametrize("event", sorted(REQUESTS))

@@ -8,7 +8,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from gcs.gate.machine.actions import Action
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import (
     COMPLETE,
     CONTROL_REGAINABLE,
@@ -39,11 +41,12 @@ from gcs.gate.machine.rows.row import (
     TAKING_OFF,
     TAKING_PICTURE,
     VERIFYING,
+    Branch,
+    Cell,
     Row,
     during,
     row,
 )
-from gcs.gate.machine.rules import Action, Branch, Cell, Guard
 
 fly_goal: Final = Branch(do=(Action.FLY_GOAL,), to=MOVING)
 refuse_goal_and_move_on_if_goal_active: Final = Branch(

@@ -10,8 +10,10 @@ from __future__ import annotations
 from typing import Final
 
 from gcs.gate.effects import OutcomeKind
-from gcs.gate.machine.rows.row import EXTERNAL, GROUNDED, HOLDING, HOVERING
-from gcs.gate.machine.rules import Action, Branch, Cell, End, Guard, Reply
+from gcs.gate.machine.actions import Action
+from gcs.gate.machine.guards import Guard
+from gcs.gate.machine.rows.row import EXTERNAL, GROUNDED, HOLDING, HOVERING, Branch, Cell
+from gcs.gate.machine.turn import End, Reply
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 

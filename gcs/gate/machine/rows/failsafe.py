@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from gcs.gate.machine.actions import Action
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import (
     LEFT_GOING_ON,
     OPERATOR_LOST,
@@ -33,11 +35,12 @@ from gcs.gate.machine.rows.row import (
     TAKING_OFF,
     TAKING_PICTURE,
     VERIFYING,
+    Branch,
+    Cell,
     Row,
     during,
     row,
 )
-from gcs.gate.machine.rules import Action, Branch, Cell, Guard
 
 # -------------------------------------------------------------------------------- severity
 

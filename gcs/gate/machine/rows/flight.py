@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from typing import Final
 
 from gcs.gate.effects import OutcomeKind
+from gcs.gate.machine.actions import Action
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import (
     COMPLETE,
     LIFTED_OFF,
@@ -34,11 +36,13 @@ from gcs.gate.machine.rows.row import (
     TAKING_OFF,
     TAKING_PICTURE,
     VERIFYING,
+    Branch,
+    Cell,
     Row,
     during,
     row,
 )
-from gcs.gate.machine.rules import Action, Branch, Cell, End, Guard
+from gcs.gate.machine.turn import End
 from gcs.gate.refusal import Code
 
 DISARMED: Final = End(OutcomeKind.TAKEN_OVER, Code.NOT_ARMED)

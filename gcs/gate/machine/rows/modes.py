@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from gcs.gate.machine.actions import Action
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import (
     AS_JUDGED,
     COMPLETE,
@@ -37,11 +39,12 @@ from gcs.gate.machine.rows.row import (
     TAKING_OFF,
     TAKING_PICTURE,
     VERIFYING,
+    Branch,
+    Cell,
     Row,
     during,
     row,
 )
-from gcs.gate.machine.rules import Action, Branch, Cell, Guard
 
 unchanged_while_mode_awaited: Final = Branch(when=(Guard.MODE_AWAITED,))
 unchanged_while_hold_awaited: Final = Branch(when=(Guard.HOLD_AWAITED,))

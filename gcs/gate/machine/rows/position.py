@@ -9,7 +9,9 @@ from collections.abc import Mapping
 from typing import Final
 
 from gcs.gate.effects import OutcomeKind
+from gcs.gate.machine.actions import Action
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import (
     AS_JUDGED,
     cannot_happen,
@@ -20,6 +22,7 @@ from gcs.gate.machine.rows.cells import (
     unchanged,
 )
 from gcs.gate.machine.rows.row import (
+    BACK,
     EXTERNAL,
     FLYING_MISSION,
     GROUNDED,
@@ -34,11 +37,13 @@ from gcs.gate.machine.rows.row import (
     TAKING_OFF,
     TAKING_PICTURE,
     VERIFYING,
+    Branch,
+    Cell,
     Row,
     during,
     row,
 )
-from gcs.gate.machine.rules import BACK, Action, Branch, Cell, End, Guard
+from gcs.gate.machine.turn import End
 from gcs.gate.refusal import Code
 
 LINK_LOST: Final = End(OutcomeKind.ABORTED, Code.LINK_LOST)

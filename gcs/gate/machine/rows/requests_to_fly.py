@@ -8,7 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from gcs.gate.machine.actions import Action
+from gcs.gate.machine.checks import Check
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import busy_or_not_ours, cannot_happen, complete_at_once, refuse
 from gcs.gate.machine.rows.row import (
     EXTERNAL,
@@ -25,11 +28,13 @@ from gcs.gate.machine.rows.row import (
     TAKING_OFF,
     TAKING_PICTURE,
     VERIFYING,
+    Branch,
+    Cell,
     Row,
     during,
     row,
 )
-from gcs.gate.machine.rules import Action, Branch, Cell, Check, Guard, Reply
+from gcs.gate.machine.turn import Reply
 from gcs.gate.refusal import Code
 
 refuse_while_taking_control: Final = Branch(

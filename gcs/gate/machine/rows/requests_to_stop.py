@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from gcs.gate.machine.actions import Action
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import (
     STOPPED_BY_OPERATOR,
     cannot_happen,
@@ -31,11 +33,13 @@ from gcs.gate.machine.rows.row import (
     TAKING_OFF,
     TAKING_PICTURE,
     VERIFYING,
+    Branch,
+    Cell,
     Row,
     during,
     row,
 )
-from gcs.gate.machine.rules import Action, Branch, Cell, Guard, Reply
+from gcs.gate.machine.turn import Reply
 from gcs.gate.refusal import Code
 
 complete_if_surely_on_ground: Final = Branch(when=(Guard.SURELY_ON_GROUND,), reply=Reply.DONE)

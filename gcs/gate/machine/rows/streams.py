@@ -11,7 +11,10 @@ from collections.abc import Mapping
 from typing import Final
 
 from gcs.gate.effects import OutcomeKind
+from gcs.gate.machine.actions import Action
+from gcs.gate.machine.checks import Check
 from gcs.gate.machine.events import Event
+from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import busy_or_not_ours, cannot_happen, complete_at_once, refuse
 from gcs.gate.machine.rows.row import (
     EXTERNAL,
@@ -28,11 +31,13 @@ from gcs.gate.machine.rows.row import (
     TAKING_OFF,
     TAKING_PICTURE,
     VERIFYING,
+    Branch,
+    Cell,
     Row,
     during,
     row,
 )
-from gcs.gate.machine.rules import Action, Branch, Cell, Check, End, Guard, Reply
+from gcs.gate.machine.turn import End, Reply
 from gcs.gate.refusal import Code
 
 SUPERSEDED: Final = End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED)
