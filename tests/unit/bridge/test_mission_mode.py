@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import pytest
+from pymavlink.dialects.v20 import all as mavlink
+
 from gcs import ipc
 from gcs.bridge.conversation.pending_requests import From
-from gcs.bridge.effects import ClientRequest
+from gcs.bridge.effects import ClientRequest, ForwardToVehicle
 from gcs.bridge.mission_mode import LATE_NS, NOT_SHOWN, RECENT_NS, SHOWN_NS, MissionMode
 from gcs.bridge.peers.client import Client, Exchange
 from gcs.bridge.translate.chosen_before_arming import KEPT_NS
@@ -12,6 +17,8 @@ from gcs.bridge.translate.says import ask
 from gcs.protocol.autopilot import PX4
 from gcs.protocol.effects import Address
 from gcs.protocol.transfer import SPEC_TIMING
+from gcs.wire.ids import Cmd
+from tests.unit.bridge.test_bridge import HEARTBEAT, VEHICLE, Table, of
 from tests.unit.bridge.vehicles import standing
 
 NOW_NS = 5_000_000_000
@@ -89,6 +96,41 @@ def chosen() -> Exchange:
     seen = standing(PX4, mission_items=3)
     assert exchange.chooses_mission(ask("mission_start"), seen, BY, NOW_NS)
     return exchange
+
+
+AUTO, MISSION = 4, 4
+ENABLED = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+ARMED_TOO = ENABLED | mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+
+
+def old_set_mode(flags: int) -> Any:
+    return mavlink.MAVLink_set_mode_message(1, flags, AUTO << 16 | MISSION << 24)
+
+
+def do_set_mode(flags: float) -> Any:
+    params = (flags, AUTO, MISSION, 0, 0, 0, 0)
+    return mavlink.MAVLink_command_long_message(1, 1, Cmd.DO_SET_MODE, 0, *params)
+
+
+@pytest.mark.parametrize(
+    ("message", "sent_on"),
+    [
+        (old_set_mode(ENABLED), True),
+        (do_set_mode(ENABLED), True),
+        (old_set_mode(ARMED_TOO), False),
+        (do_set_mode(ARMED_TOO), False),
+    ],
+    ids=["SET_MODE", "DO_SET_MODE", "SET_MODE that arms", "DO_SET_MODE that arms"],
+)
+def test_a_mode_is_sent_on_only_where_it_does_not_arm_too(message: Any, sent_on: bool) -> None:
+    """Nobody has judged an arming that comes with a mode: it is asked of the gate instead."""
+    table = Table(seen=standing(PX4, mission_items=3))
+    table.says(HEARTBEAT)
+    table.bridge.armings.shown("AUTO.LOITER", VEHICLE.sysid, table.now_ns, armed=False)
+    judged = table.says(message)
+    assert bool(of(ForwardToVehicle, judged.effects)) is sent_on
+    asked = [each.command.word for each in of(ClientRequest, judged.effects)]
+    assert asked == ([] if sent_on else ["mission_start"])
 
 
 def due_ns(exchange: Exchange) -> int | None:
