@@ -6,7 +6,8 @@ import pytest
 
 from gcs.gate.effects import CommandKind
 from gcs.gate.inputs import CommandEnded
-from tests.unit.gate.rows import Flight, Row, rows
+from tests.unit.gate.flight_words import Flight
+from tests.unit.gate.rows import Row, rows
 
 
 def nobodys_answers(flight: Flight) -> None:

@@ -17,8 +17,8 @@ from gcs.gate.inputs import StreamSeen
 from gcs.gate.refusal import Code
 from gcs.gate.requests import BeginStream
 from gcs.gate.states import State
-from tests.unit.gate.reactions import default_policy, state_of
 from tests.unit.gate.script import Script
+from tests.unit.gate.situations import default_policy, state_of
 from tests.unit.gate.stream_effects import sent, told
 
 UP = 25.0

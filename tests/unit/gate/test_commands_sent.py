@@ -6,7 +6,8 @@ import pytest
 
 from gcs.gate.effects import SendCommand
 from gcs.gate.machine.memory import GATE
-from tests.unit.gate.rows import Flight, Row, rows
+from tests.unit.gate.flight_words import Flight
+from tests.unit.gate.rows import Row, rows
 from tests.unit.gate.script import SECOND
 
 

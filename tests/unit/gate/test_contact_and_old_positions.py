@@ -6,7 +6,8 @@ import pytest
 
 from gcs.gate.inputs import LandedSeen
 from gcs.gate.states import LandedState
-from tests.unit.gate.rows import Flight, Row, rows
+from tests.unit.gate.flight_words import Flight
+from tests.unit.gate.rows import Row, rows
 
 
 def reported_in_air(flight: Flight) -> None:

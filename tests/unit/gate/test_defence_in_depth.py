@@ -16,9 +16,10 @@ from gcs.gate.machine.memory import Memory, Task
 from gcs.gate.machine.turn import Turn
 from gcs.gate.requests import TakePhoto
 from gcs.gate.states import State
-from tests.unit.gate.reactions import flight, remember, state_of
-from tests.unit.gate.rows import Flight, Row, place, rows
+from tests.unit.gate.flight_words import Flight, place
+from tests.unit.gate.rows import Row, rows
 from tests.unit.gate.script import SECOND, Script, policy
+from tests.unit.gate.situations import flight, remember, state_of
 
 
 def holds_with_a_picture(flight: Flight) -> None:

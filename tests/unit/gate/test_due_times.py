@@ -22,14 +22,15 @@ from gcs.gate.requests import (
     TakePhoto,
 )
 from gcs.gate.states import FlightMode, LandedState, State
-from tests.unit.gate.reactions import (
+from tests.unit.gate.script import MS, SECOND, Script, policy
+from tests.unit.gate.situations import (
+    UP,
     default_policy,
     ended,
     flight,
+    lead_to,
     state_of,
 )
-from tests.unit.gate.script import MS, SECOND, Script, policy
-from tests.unit.gate.situations import UP, lead_to
 
 
 def fresh(script: Script, *, position: bool = True) -> int:

@@ -9,8 +9,9 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.states import Control, State
-from tests.unit.gate.reactions import remember
-from tests.unit.gate.rows import FACTS, Flight, Row, rows
+from tests.unit.gate.flight_words import FACTS, Flight
+from tests.unit.gate.rows import Row, rows
+from tests.unit.gate.situations import remember
 
 
 def interrupted(flight: Flight, state: str, control: str = "OURS") -> None:

@@ -25,14 +25,15 @@ from gcs.gate.requests import (
     TakePhoto,
 )
 from gcs.gate.states import FlightMode, LandedState, State
-from tests.unit.gate.reactions import (
+from tests.unit.gate.script import MS, SECOND, Script, policy
+from tests.unit.gate.situations import (
     STILL,
+    UP,
     flight,
+    lead_to,
     state_of,
     take_off,
 )
-from tests.unit.gate.script import MS, SECOND, Script, policy
-from tests.unit.gate.situations import UP, lead_to
 
 
 class TestSettled:

@@ -6,10 +6,10 @@ import pytest
 
 from gcs.gate.inputs import LandedSeen, PositionSeen
 from gcs.gate.states import LandedState
-from tests.unit.gate.reactions import STILL
-from tests.unit.gate.rows import Flight, Row, place, rows
+from tests.unit.gate.flight_words import Flight, place
+from tests.unit.gate.rows import Row, rows
 from tests.unit.gate.script import MS
-from tests.unit.gate.situations import UP
+from tests.unit.gate.situations import STILL, UP
 
 
 def stamped(flight: Flight, east: str, after_ms: str, arrives_ms: str) -> None:

@@ -17,18 +17,16 @@ from gcs.gate.inputs import (
 from gcs.gate.refusal import Code
 from gcs.gate.requests import Disarm
 from gcs.gate.states import Control, FlightMode, LandedState, State
-from tests.unit.gate.reactions import (
-    Reaction,
+from tests.unit.gate.script import Script, policy
+from tests.unit.gate.situations import (
+    UP,
     ended,
     flight,
-    reaction,
     remember,
     sample,
     state_of,
     with_facts,
 )
-from tests.unit.gate.script import Script, policy
-from tests.unit.gate.situations import UP
 
 ACCEPTED = 0
 FAILED = 4
@@ -186,9 +184,9 @@ class TestAnswers:
         script, request_id = flight(State.EXTERNAL)
         remember(script, outstanding=((request_id, CommandKind.DISARM),))
         given = CommandEnded(request_id, CommandKind.DISARM, FAILED, "")
-        assert reaction(script, request_id, lambda s: s.feed(given)) == Reaction(
-            State.EXTERNAL, Control.NONE, [], f"aborted {Code.VEHICLE_REFUSED}"
-        )
+        script.feed(given)
+        assert (state_of(script), script.commands()) == (State.EXTERNAL, [])
+        assert ended(script, request_id) == f"aborted {Code.VEHICLE_REFUSED}"
 
     def test_a_disarm_asked_for_on_the_ground_ends_with_a_lift_off_in_return_mode(self) -> None:
         script = Script(policy("default")).connect()

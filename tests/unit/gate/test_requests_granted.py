@@ -7,7 +7,8 @@ import pytest
 from gcs.gate.effects import SwitchedFence
 from gcs.gate.inputs import Requested
 from gcs.gate.requests import SwitchFence
-from tests.unit.gate.rows import Flight, Row, rows
+from tests.unit.gate.flight_words import Flight
+from tests.unit.gate.rows import Row, rows
 
 
 def switched(flight: Flight) -> None:

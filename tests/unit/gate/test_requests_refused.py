@@ -115,8 +115,6 @@ flown; no positions; later 2 | control | STALE NONE, control refused STALE
 # A resume from the grace of a hold is refused, and a goal whose position is too old at its tick.
 stale HOLDING | resume | =, resume refused STALE
 in HOVERING; no positions; wait 1; goto 3 0 1.5 | tick | STALE OURS, goto refused STALE
-# A return while the position is too old is blocked.
-in STALE | return | =, sends HOLD, return refused RTL_BLOCKED
 """,
 )  # fmt: skip
 

@@ -11,7 +11,8 @@ from gcs.gate.airspace.verifier import verifier_for
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle
 from gcs.gate.inputs import VerifierChanged
-from tests.unit.gate.rows import Flight, Row, rows
+from tests.unit.gate.flight_words import Flight
+from tests.unit.gate.rows import Row, rows
 
 
 def net(flight: Flight) -> None:

@@ -12,8 +12,8 @@ from gcs.gate.refusal import Code
 from gcs.gate.requests import ReturnHome
 from gcs.gate.states import State
 from tests.unit.gate.airspace import at
-from tests.unit.gate.reactions import AIRBORNE, flight, state_of
 from tests.unit.gate.script import policy
+from tests.unit.gate.situations import AIRBORNE, flight, state_of
 
 NEAR = ReturnPlace("rally point 1", at(2, 0, 0))
 OUTSIDE = ReturnPlace("rally point 2", at(0, 500, 0))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.condition import Condition
-from tests.unit.gate.rows import Flight, Row, rows
+from tests.unit.gate.flight_words import Flight
+from tests.unit.gate.rows import Row, rows
 
 
 def has(flight: Flight, *conditions: str) -> None:

@@ -11,9 +11,8 @@ from gcs.gate.machine.memory import Goal
 from gcs.gate.machine.table import STREAMS, Streams
 from gcs.gate.requests import GoTo
 from gcs.gate.states import Control, State
-from tests.unit.gate.reactions import STATES, flight, remember
 from tests.unit.gate.script import SECOND, Script, policy
-from tests.unit.gate.situations import UP
+from tests.unit.gate.situations import STATES, UP, flight, remember
 
 # Within half a metre the goal itself is sent.
 HELD = Goal((0.1, 0.2, -UP), None, ())

@@ -16,16 +16,14 @@ from gcs.frames import Vec3, enu_from_ned, ned_from_enu
 from gcs.gate.effects import (
     CommandKind,
     OutcomeKind,
-    Ruling,
     Say,
-    StreamVerdict,
 )
-from gcs.gate.inputs import StreamSeen, Tick
+from gcs.gate.inputs import StreamSeen
 from gcs.gate.refusal import Code
-from gcs.gate.requests import Abort, BeginStream, EndStream, GoTo, Hold, Land
-from gcs.gate.states import FlightMode, State
-from tests.unit.gate.reactions import default_policy, state_of
-from tests.unit.gate.script import MS, SECOND, Script, policy
+from gcs.gate.requests import BeginStream, EndStream
+from gcs.gate.states import State
+from tests.unit.gate.script import Script
+from tests.unit.gate.situations import default_policy, state_of
 from tests.unit.gate.stream_effects import sent, told
 
 UP = 10.0
@@ -77,30 +75,6 @@ def fly(script: Script, seconds: float, sample: StreamSeen | None) -> None:
 # ------------------------------------------------------------------------------ begin and end
 
 
-def test_the_first_sample_that_clears_begins_the_stream() -> None:
-    script = hovering()
-    script.feed(velocity(1.0, 2.0, 0.5))
-    assert script.states() == [State.STREAMING]
-    assert told(script) == [None]
-    assert sent(script) == []  # decided at once, sent with the tick
-    script.tick()
-    (permit,) = sent(script)
-    assert (permit.pos_ned, permit.v_ned) == (None, (2.0, 1.0, -0.5))
-
-
-def test_a_stream_that_is_asked_for_holds_until_its_first_sample() -> None:
-    script = hovering()
-    asked = script.ask(BeginStream())
-    assert script.verdict(asked).ruling is Ruling.ACCEPTED
-    assert state_of(script) is State.STREAMING
-    script.tick()
-    assert [permit.pos_ned for permit in sent(script)] == [(0.0, 0.0, -UP)]
-    script.feed(velocity(1.0, 0.0, 0.0))
-    script.tick()
-    assert sent(script)[-1].v_ned == (0.0, 1.0, 0.0)
-    assert not script.ended(asked)
-
-
 def test_its_end_is_asked_for_and_completes_both_requests() -> None:
     script = hovering()
     begun = script.ask(BeginStream())
@@ -112,79 +86,6 @@ def test_its_end_is_asked_for_and_completes_both_requests() -> None:
     east_m = script.pos_ned[1]
     # 4 m/s: 0.125 s old is the position, and 0.3 s it takes until the vehicle reacts
     assert script.gate.hold_goal_ned == pytest.approx((0.0, east_m + 4 * 0.425, -UP))
-
-
-def test_the_end_of_no_stream_is_complete_at_once() -> None:
-    script = hovering()
-    assert script.outcome(script.ask(EndStream())).kind is OutcomeKind.COMPLETE
-    assert script.states() == []
-
-
-def test_begin_again_is_complete_at_once_and_a_stream_begun_by_a_sample_can_be_adopted() -> None:
-    script = streaming()
-    adopted = script.ask(BeginStream())
-    assert script.verdict(adopted).ruling is Ruling.ACCEPTED
-    assert not script.ended(adopted)
-    assert script.outcome(script.ask(BeginStream())).kind is OutcomeKind.COMPLETE
-    assert not script.ended(adopted)
-
-
-@pytest.mark.parametrize("request_", [Hold(), Abort()])
-def test_a_hold_ends_the_stream_in_hold_mode(request_: Hold | Abort) -> None:
-    script = hovering()
-    begun = script.ask(BeginStream())
-    script.feed(velocity(1.0, 0.0, 0.0))
-    script.ask(request_, "another")
-    assert state_of(script) is State.HOLDING
-    assert script.outcome(begun).kind is OutcomeKind.ABORTED
-    script.feed(velocity(1.0, 0.0, 0.0))
-    script.forget()
-    script.tick()
-    assert [permit.v_ned for permit in sent(script)] == [None]
-
-
-def test_a_landing_ends_the_stream() -> None:
-    script = streaming()
-    script.ask(Land())
-    assert state_of(script) is State.LANDING
-    script.forget()
-    script.tick()
-    (held,) = sent(script)
-    assert held.pos_ned == script.gate.pos_ned, "its place, until it shows the mode"
-    script.heartbeat(FlightMode.LAND)
-    script.forget()
-    script.tick()
-    assert sent(script) == []
-
-
-def test_a_goal_of_its_client_ends_the_stream_and_is_flown() -> None:
-    script = hovering()
-    begun = script.ask(BeginStream())
-    script.feed(velocity(1.0, 0.0, 0.0))
-    goal = script.goto(5.0, 0.0, UP)
-    assert script.outcome(begun).kind is OutcomeKind.COMPLETE
-    assert state_of(script) is State.HOVERING
-    script.tick()
-    assert script.verdict(goal).ruling is Ruling.ACCEPTED
-    assert state_of(script) is State.MOVING
-
-
-def test_a_goal_of_another_client_is_busy() -> None:
-    script = streaming()
-    asked = script.ask(GoTo((0.0, 5.0, -UP)), "another")
-    assert script.refusal(asked) is Code.BUSY
-    assert state_of(script) is State.STREAMING
-
-
-def test_a_stream_replaces_a_goal_where_the_policy_allows_it() -> None:
-    script = hovering(retarget="replace")
-    goal = script.goto(20.0, 0.0, UP)
-    script.tick()
-    script.feed(velocity(0.0, 1.0, 0.0, "another"))
-    assert told(script) == [Code.BUSY]
-    script.feed(velocity(0.0, 1.0, 0.0))
-    assert script.outcome(goal).kind is OutcomeKind.SUPERSEDED
-    assert state_of(script) is State.STREAMING
 
 
 def test_a_stream_that_is_asked_for_stops_the_flight_to_a_goal() -> None:
@@ -202,16 +103,6 @@ def test_a_stream_that_is_asked_for_stops_the_flight_to_a_goal() -> None:
     assert hold_ned is not None
     assert enu_from_ned(hold_ned)[0] == pytest.approx(4.0 + 2.0 * 0.425)
     assert 4.0 <= enu_from_ned(permit.pos_ned)[0] <= 4.85
-
-
-def test_a_stream_does_not_replace_a_goal_where_the_policy_does_not_allow_it() -> None:
-    script = hovering()
-    script.goto(20.0, 0.0, UP)
-    script.tick()
-    assert script.refusal(script.ask(BeginStream())) is Code.BUSY
-    script.feed(velocity(0.0, 1.0, 0.0))
-    assert told(script) == [Code.BUSY]
-    assert state_of(script) is State.MOVING
 
 
 # ------------------------------------------------------------------------- verified samples
@@ -396,19 +287,6 @@ def test_positions_are_flown_as_they_come() -> None:
 # ------------------------------------------------------------------------------ dead-man's time
 
 
-def test_a_source_that_goes_silent_is_held_in_its_place() -> None:
-    script = streaming((4.0, 0.0, 0.0))
-    at_ns = script.now_ns
-    script.wait(0.45)
-    assert all(permit.v_ned is not None for permit in sent(script))
-    script.forget()
-    script.tick()
-    assert script.now_ns - at_ns == 500 * MS
-    assert [permit.v_ned for permit in sent(script)] == [None]
-    assert told(script) == [Code.DEADLINE]
-    assert state_of(script) is State.STREAMING
-
-
 def test_a_sample_after_a_silence_waits_for_others() -> None:
     script = streaming()
     script.wait(1.0)
@@ -429,57 +307,11 @@ def test_samples_with_gaps_are_not_good_again() -> None:
     assert told(script) == []
 
 
-def test_a_stream_that_stays_silent_is_over() -> None:
-    script = hovering()
-    begun = script.ask(BeginStream())
-    script.feed(velocity(1.0, 0.0, 0.0))
-    at_ns = script.now_ns
-    script.wait(4.95)
-    assert state_of(script) is State.STREAMING
-    script.tick()
-    assert script.now_ns - at_ns == 5 * SECOND
-    assert state_of(script) is State.HOVERING
-    outcome = script.outcome(begun)
-    assert (outcome.kind, outcome.code) == (OutcomeKind.TIMED_OUT, Code.DEADLINE)
-    assert "no sample of the stream came for 5 s" in outcome.sentence
-
-
 def test_a_stream_that_is_refused_is_not_over() -> None:
     script = hovering()
     begun = script.ask(BeginStream())
     fly(script, 10.0, velocity(11.0, 0.0, 0.0))
     assert not script.ended(begun)
-
-
-# -------------------------------------------------------------------- other sources and states
-
-
-def test_samples_of_another_source_are_refused_once_and_never_sent() -> None:
-    script = streaming()
-    for _ in range(10):
-        script.feed(velocity(1.0, 0.0, 0.0))
-        script.feed(velocity(0.0, 3.0, 0.0, "another"))
-        script.tick()
-    (refused,) = script.all(StreamVerdict)
-    assert refused.source == "another"
-    assert told(script) == [Code.OTHER_OPERATOR]
-    assert {permit.v_ned for permit in sent(script)} == {(0.0, 1.0, 0.0)}
-    assert script.refusal(script.ask(BeginStream(), "another")) is Code.OTHER_OPERATOR
-
-
-def test_samples_where_none_is_flown_are_told_once_an_episode() -> None:
-    script = Script(policy("default")).connect()
-    script.forget()
-    for _ in range(20):
-        script.feed(velocity(1.0, 0.0, 0.0))
-        script.tick()
-    assert told(script) == [Code.NOT_FLYING]
-    script.wait(5.1)
-    script.feed(velocity(1.0, 0.0, 0.0))
-    assert told(script) == [Code.NOT_FLYING, Code.NOT_FLYING]
-    script.wait(4.9)
-    script.feed(velocity(1.0, 0.0, 0.0))
-    assert told(script) == [Code.NOT_FLYING, Code.NOT_FLYING]
 
 
 # --------------------------------------------------------------------------------- positions
@@ -527,30 +359,3 @@ def test_a_position_too_old_for_longer_than_the_grace_is_held() -> None:
         script.tick()
     assert script.commands()[0] is CommandKind.HOLD
     assert script.outcome(begun).code is Code.STALE
-
-
-def test_a_breach_that_is_predicted_all_the_same_is_braked_and_then_held() -> None:
-    """It is silent, and follows setpoints, which stop it in 0.3 s + 5 / 5 s."""
-    script = streaming()
-    script.at(148.0, 0.0, UP)
-    script.v_ned = ned_from_enu((5.0, 0.0, 0.0))
-    script.forget()
-    script.position()
-    assert state_of(script) is State.HOLDING
-    assert script.commands() == []
-    script.wait(1.35)
-    assert script.commands() == [CommandKind.HOLD]
-
-
-def test_a_pilot_who_takes_over_ends_the_stream() -> None:
-    script = hovering()
-    begun = script.ask(BeginStream())
-    script.feed(velocity(1.0, 0.0, 0.0))
-    script.heartbeat(FlightMode.OTHER)
-    assert state_of(script) is State.EXTERNAL
-    assert script.outcome(begun).kind is OutcomeKind.TAKEN_OVER
-    script.forget()
-    script.feed(velocity(1.0, 0.0, 0.0))
-    script.feed(Tick(0))
-    assert told(script) == [Code.NOT_IN_CONTROL]
-    assert sent(script) == []

@@ -9,8 +9,9 @@ import pytest
 
 from gcs.gate.effects import SendCommand
 from gcs.gate.machine.memory import Memory
-from tests.unit.gate.reactions import elsewhere, remember
-from tests.unit.gate.rows import Flight, Row, place, rows
+from tests.unit.gate.flight_words import Flight, place
+from tests.unit.gate.rows import Row, rows
+from tests.unit.gate.situations import elsewhere, remember
 
 
 def climbed_to(flight: Flight, up: str, mode: str) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.gate.reactions import remember
-from tests.unit.gate.rows import Flight, Row, rows
+from tests.unit.gate.flight_words import Flight
+from tests.unit.gate.rows import Row, rows
+from tests.unit.gate.situations import remember
 
 
 def disarms_unseen(flight: Flight) -> None:

@@ -13,10 +13,10 @@ from gcs.gate.effects import CommandKind, SendSetpoint
 from gcs.gate.geometry import Circle
 from gcs.gate.inputs import HeartbeatSeen, LandedSeen, PositionSeen, VerifierChanged
 from gcs.gate.states import State
-from tests.unit.gate.reactions import remember
-from tests.unit.gate.rows import Flight, Row, place, rows
+from tests.unit.gate.flight_words import Flight, place
+from tests.unit.gate.rows import Row, rows
 from tests.unit.gate.script import MS, SECOND, Script, policy
-from tests.unit.gate.situations import UP, lead_to
+from tests.unit.gate.situations import UP, lead_to, remember
 
 
 def dashes(flight: Flight) -> None:

@@ -12,8 +12,8 @@ from gcs.gate.machine.could_resume import why_not_resume
 from gcs.gate.refusal import Code
 from gcs.gate.requests import Hold, Resume
 from gcs.gate.states import State
-from tests.unit.gate.reactions import flight
 from tests.unit.gate.script import Script, policy
+from tests.unit.gate.situations import flight
 
 FLIES_ITSELF = [State.RETURNING, State.FLYING_MISSION]
 
