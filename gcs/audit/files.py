@@ -20,7 +20,7 @@ from gcs.audit.messages import (
 )
 from gcs.mcap_file.format import Attachment, Channel, Message, Metadata
 from gcs.mcap_file.reader import Condition, Reading
-from gcs.record.seals import PartBegan
+from gcs.record.parts import PartBegan
 from gcs.vehicle.record_items import Start
 
 Progress = Callable[[Path, Condition], None]

@@ -9,7 +9,7 @@ import msgspec
 
 from gcs.audit.messages import Attachments, Stored
 from gcs.gate.policy.parse import DEFAULT
-from gcs.record.seals import PartBegan, Seal
+from gcs.record.parts import PartBegan, Seal
 from gcs.session.as_recorded import AsRecorded
 from gcs.session.inputs import TAGS, Datagram, FileRead, Input, OtherInput
 from gcs.vehicle.record_items import FaultKept, FileKept, Pieces, Start, attachment_name

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from zlib import crc32
 
 from gcs.audit.messages import Stored
-from gcs.record.seals import PartBegan, Seal
+from gcs.record.parts import PartBegan, Seal
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ import msgspec
 from gcs.audit.inputs import CannotReadError, Kept, datagram_of, kept_of
 from gcs.audit.messages import INPUT_TOPIC, Attachments, InputMessage, Stored
 from gcs.audit.seals import Altered, Missing, SealCheck
-from gcs.record.seals import PartBegan, Seal
+from gcs.record.parts import PartBegan, Seal
 from gcs.session.inputs import ClientCame, Input
 from gcs.vehicle.record_items import FaultKept, Pieces, Start
 

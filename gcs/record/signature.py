@@ -1,6 +1,6 @@
 """The signature of a record, in a file beside it: whoever alters the record cannot make it anew.
 
-The seals inside a record (`seals.py`) are checksums without a key, which find accidents.  This is
+The seals inside a record (`parts.py`) are checksums without a key, which find accidents.  This is
 an HMAC-SHA256 (RFC 2104) over all bytes of the file, with a key as `gcs key new` makes it.
 """
 

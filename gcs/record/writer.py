@@ -29,9 +29,16 @@ from gcs.mcap_file.writer import (
 )
 from gcs.record import ros1
 from gcs.record.derived import Derived
-from gcs.record.recorder_status import RecordLost, RecordNews, RecordResumed, RecordRotated
-from gcs.record.rotation import NEVER, Rotation
-from gcs.record.seals import PartBegan, Seal
+from gcs.record.parts import (
+    NEVER,
+    PartBegan,
+    RecordLost,
+    RecordNews,
+    RecordResumed,
+    RecordRotated,
+    Rotation,
+    Seal,
+)
 from gcs.record.topics import INPUT_TOPIC, Out
 from gcs.report import (
     AttachmentItem,

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Final, TypeAlias
 
-from gcs.record.recorder_status import RecordLost, RecordResumed, RecordRotated
+from gcs.record.parts import RecordLost, RecordResumed, RecordRotated
 from gcs.record.writer import Recorder
 from gcs.report import FrameItem, FramesItem, GeodeticItem, PoseItem, RecordItem
 from gcs.session.inputs import Datagram, DiskLow, RecorderChanged, RecorderGrew

@@ -25,7 +25,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.policy_digest import policy_digest
 from gcs.policy_file import PolicyFileError, load_policy
 from gcs.record.compact import compact_in_background
-from gcs.record.rotation import Rotation
+from gcs.record.parts import Rotation
 from gcs.record.writer import Recorder, RecorderError
 from gcs.session.effects import EVERYONE
 from gcs.session.setup import Setup

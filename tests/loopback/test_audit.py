@@ -13,7 +13,7 @@ from gcs import ipc
 from gcs.audit.audit import AuditResult
 from gcs.audit.messages import INPUT_TOPIC, Attachments, Stored
 from gcs.audit.turns import Turns
-from gcs.record.rotation import Rotation
+from gcs.record.parts import Rotation
 from gcs.record.writer import Recorder
 from gcs.session import inputs
 from tests.audits import audited, kind_of, read, resealed, with_data

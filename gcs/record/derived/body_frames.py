@@ -28,8 +28,7 @@ from foxglove.messages import (
 
 from gcs.frames import Vec3, enu_from_ned
 from gcs.mcap_file.writer import Channel
-from gcs.record.derived.drawing import NO_TURN, color
-from gcs.record.derived.foxglove_channel import channel, stamp
+from gcs.record.derived.drawing import NO_TURN, channel, color, stamp
 from gcs.record.topics import Deriver, Grid, Out
 from gcs.report import FsaItem, GeodeticItem, PoseItem, Quat, RecordItem, SetpointItem
 

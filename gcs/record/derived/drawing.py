@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from foxglove import Schema
 from foxglove.messages import (
     Color,
     Duration,
@@ -23,6 +24,7 @@ from foxglove.messages import (
 )
 
 from gcs.frames import Vec3
+from gcs.mcap_file.writer import Channel
 
 NO_TURN = Quaternion(x=0.0, y=0.0, z=0.0, w=1.0)
 WHITE = (1.0, 1.0, 1.0)
@@ -118,3 +120,14 @@ def place(at_enu: Vec3) -> Pose:
     """A pose without a turn."""
     east, north, up = at_enu
     return Pose(position=Vector3(x=east, y=north, z=up), orientation=NO_TURN)
+
+
+def channel(topic: str, schema: Schema) -> Channel:
+    """A protobuf channel."""
+    return Channel(topic, "protobuf", schema.name, schema.encoding, schema.data)
+
+
+def stamp(now_ns: int) -> Timestamp:
+    """Of log_time: ns since 1970."""
+    seconds, nanoseconds = divmod(now_ns, 1_000_000_000)
+    return Timestamp(seconds, nanoseconds)

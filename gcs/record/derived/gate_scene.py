@@ -15,8 +15,7 @@ from foxglove.messages import Pose, PoseInFrame, Quaternion, SceneUpdate, Vector
 
 from gcs.frames import Vec3, enu_from_ned
 from gcs.mcap_file.writer import Channel
-from gcs.record.derived.drawing import Rgb, ball, color, entity, label, line
-from gcs.record.derived.foxglove_channel import channel, stamp
+from gcs.record.derived.drawing import Rgb, ball, channel, color, entity, label, line, stamp
 from gcs.record.derived.gate_json import request_text
 from gcs.record.topics import Deriver, Grid, Out
 from gcs.report import DecisionItem, PoseItem, RecordItem, SetpointItem, StopItem

@@ -10,8 +10,7 @@ from foxglove.messages import Pose, PosesInFrame, Vector3
 
 from gcs.frames import enu_from_ned
 from gcs.mcap_file.writer import Channel
-from gcs.record.derived.drawing import NO_TURN
-from gcs.record.derived.foxglove_channel import channel, stamp
+from gcs.record.derived.drawing import NO_TURN, channel, stamp
 from gcs.record.derived.trail import Trail
 from gcs.record.topics import Deriver, Out
 from gcs.report import PoseItem, RecordItem

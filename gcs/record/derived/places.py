@@ -13,7 +13,7 @@ from foxglove.messages import LocationFix, LocationFixPositionCovarianceType
 
 from gcs.mcap_file.writer import Channel
 from gcs.record.derived.body_frames import FrameNames
-from gcs.record.derived.foxglove_channel import channel, stamp
+from gcs.record.derived.drawing import channel, stamp
 from gcs.record.topics import Deriver, Grid, Out
 from gcs.report import FenceItem, GeodeticItem, RecordItem
 

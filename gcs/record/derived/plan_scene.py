@@ -10,8 +10,17 @@ from typing import ClassVar
 from foxglove.messages import GeoJson, SceneEntity, SceneUpdate, Timestamp, TriangleListPrimitive
 
 from gcs.frames import enu_from_ned
-from gcs.record.derived.drawing import ball, clear, color, entity, label, line, surface
-from gcs.record.derived.foxglove_channel import channel, stamp
+from gcs.record.derived.drawing import (
+    ball,
+    channel,
+    clear,
+    color,
+    entity,
+    label,
+    line,
+    stamp,
+    surface,
+)
 from gcs.record.derived.outline import Outline, corners, margin_outline, triangles
 from gcs.record.topics import Deriver, Out
 from gcs.report import FenceItem, FenceShape, MissionItem, RecordItem

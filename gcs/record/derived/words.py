@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from foxglove.messages import Event, KeyValuePair, Log, LogLevel
 
-from gcs.record.derived.foxglove_channel import channel, stamp
+from gcs.record.derived.drawing import channel, stamp
 from gcs.record.derived.gate_json import request_text
 from gcs.record.topics import Deriver, Out
 from gcs.report import DecisionItem, LogEvent, RecordItem

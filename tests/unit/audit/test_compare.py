@@ -14,7 +14,7 @@ from gcs.audit.messages import Stored
 from gcs.audit.seals import Altered, Missing, SealCheck
 from gcs.record import ros1
 from gcs.record.derived import Derived
-from gcs.record.seals import PartBegan, Seal
+from gcs.record.parts import PartBegan, Seal
 from gcs.report import Direction, LogEvent
 from gcs.wire.codec import FrameWriter
 from gcs.wire.messages import CommandAck

@@ -17,7 +17,7 @@ from mcap.writer import Writer
 from gcs.mcap_file.errors import BadRecordError
 from gcs.mcap_file.reader import Reading
 from gcs.record.check import check
-from gcs.record.rotation import Rotation
+from gcs.record.parts import Rotation
 from gcs.record.writer import Recorder
 from gcs.report import ParamItem, PoseItem
 from tests.shares import examples

@@ -26,8 +26,7 @@ from gcs.mcap_file.writer import (
 )
 from gcs.record import ros1, writer
 from gcs.record.derived import Derived
-from gcs.record.recorder_status import RecordLost, RecordResumed, RecordRotated
-from gcs.record.rotation import Rotation
+from gcs.record.parts import RecordLost, RecordResumed, RecordRotated, Rotation
 from gcs.record.topics import INPUT_TOPIC, Out
 from gcs.record.writer import Recorder, RecorderError
 from gcs.report import (
