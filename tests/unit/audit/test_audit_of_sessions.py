@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +20,7 @@ from gcs.audit.messages import Stored, Tape
 from gcs.audit.turns import NoStartError
 from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
-from gcs.mcap_file.writer import Backend, FoxgloveBackend, McapBackend, RawFile, open_exclusive
+from gcs.mcap_file.writer import Backend, FoxgloveBackend, McapBackend
 from gcs.policy_file import load_policy
 from gcs.record import writer
 from gcs.record.writer import Recorder
@@ -46,6 +45,7 @@ from gcs.wire.frame import Frame, plain_frames
 from gcs.wire.messages import Heartbeat
 from tests.audits import RecordedSession, audited, kind_of, read, resealed, with_data
 from tests.unit.cli.command_line import gcs
+from tests.unit.record.disks import Disk
 
 START_NS = 1_767_225_600_000_000_000
 BEAT = Heartbeat(
@@ -230,42 +230,19 @@ def test_a_policy_of_another_version_has_this_ones_defaults() -> None:
 # ----------------------------------------------------------------------------------- parts
 
 
-class Disk:
-    """A disk that can be full."""
-
-    def __init__(self) -> None:
-        self.full = False
-
-    def open(self, path: Path) -> RawFile:
-        return DiskFile(self, open_exclusive(path))
-
-
-class DiskFile:
-    def __init__(self, disk: Disk, raw: RawFile) -> None:
-        self._disk, self._raw = disk, raw
-
-    def write(self, data: memoryview, /) -> int | None:
-        if self._disk.full:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return self._raw.write(data)
-
-    def close(self) -> None:
-        self._raw.close()
-
-
 @pytest.fixture
 def two_parts(tmp_path: Path, beats: FrameWriter) -> list[Path]:
     """A disk is full for six seconds."""
-    disk = Disk()
+    disk = Disk(1 << 30)
     recorder = Recorder.open(
         tmp_path, "x", "20260101-000000", START_NS, opener=disk.open, sealed=True
     )
     session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
     session.feed(Datagram(0, beats.write(BEAT)))
     session.wait(3.0)
-    disk.full = True
+    disk.free = 0
     session.wait(2.0)
-    disk.full = False
+    disk.free = 1 << 30
     session.wait(9.0)
     recorder.close(session.now_ns)
     assert [path.name for path in recorder.parts] == [

@@ -19,7 +19,6 @@ from gcs.flight_report.path_svg import colour_of
 from gcs.flight_report.projection import Box, View, round_step, ticks
 from gcs.flight_report.render import page
 from gcs.report import (
-    DecisionItem,
     FenceItem,
     FenceShape,
     FsaItem,
@@ -37,7 +36,7 @@ from tests.unit.flight_report.test_scan import (
     scanned,
     status,
 )
-from tests.unit.record.flights import MS, START_NS, a_flight
+from tests.unit.record.flights import MS, START_NS, a_flight, decided
 
 EVIL = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'&"
 
@@ -78,13 +77,10 @@ class Elements(HTMLParser):
 
 
 def with_evil_words() -> list[RecordItem]:
-    decision = DecisionItem(
-        vehicle=1,
-        request_id=1,
+    decision = decided(
+        1,
+        "refused",
         source=EVIL,
-        word="goto",
-        phase="verdict",
-        outcome="refused",
         code=EVIL,
         sentence=EVIL,
         zone=EVIL,
@@ -169,13 +165,9 @@ class TestSelfContained:
             if step % 25 == 0:
                 items.append(heartbeat())
                 items.append(
-                    DecisionItem(
-                        vehicle=1,
-                        request_id=step,
-                        source="operator",
-                        word="goto",
-                        phase="verdict",
-                        outcome="refused",
+                    decided(
+                        step,
+                        "refused",
                         code="OUTSIDE_FENCE",
                         sentence="goal (500.00 E, 0.00 N, 2.00 U) is 350.2 m outside",
                         zone="home",

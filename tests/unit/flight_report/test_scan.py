@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcs.flight_report.facts import Decision, Estimator, Gps, Identity, LogLine, Text, Vibration
-from gcs.flight_report.flight import Flight
+from gcs.flight_report.facts import (
+    Decision,
+    Estimator,
+    Fact,
+    Gps,
+    Identity,
+    LogLine,
+    Text,
+    Vibration,
+)
+from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.render import page
 from gcs.flight_report.scan import scan
 from gcs.flight_report.summary import (
@@ -40,7 +49,7 @@ from gcs.report import (
 from gcs.wire.dialect import MESSAGES
 from gcs.wire.frame import msgid_in
 from tests.unit.logfile import tlogs
-from tests.unit.record.flights import MS, START_NS, a_flight, frame_v2, record
+from tests.unit.record.flights import MS, START_NS, a_flight, decided, frame_v2, record
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
@@ -88,19 +97,30 @@ def scanned(directory: Path, items: Iterable[RecordItem], step_ns: int = 125 * M
     return scan(record(directory, items, step_ns))
 
 
+def vehicle_of(flight: Flight) -> VehicleFlight:
+    found = flight.main_vehicle()
+    assert found is not None
+    return found
+
+
+def reader_of(topic: str) -> Callable[[bytes], Iterable[Fact]]:
+    source = source_of(topic)
+    assert source is not None
+    assert source.read is not None
+    return source.read
+
+
 class TestFlight:
     @pytest.fixture
     def flight(self, tmp_path: Path) -> Flight:
         return scanned(tmp_path, a_flight_that_loses_gps())
 
     def test_which_vehicle_it_was(self, flight: Flight) -> None:
-        vehicle = flight.main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(flight)
         assert (vehicle.sysid, vehicle.autopilot, vehicle.kind) == (1, "px4", "quadrotor")
 
     def test_its_totals(self, flight: Flight) -> None:
-        vehicle = flight.main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(flight)
         totals = vehicle.totals
         assert totals.take_offs == 1
         assert totals.max_up_m == pytest.approx(10.0)
@@ -110,8 +130,7 @@ class TestFlight:
         assert totals.landed_s is None
 
     def test_what_went_wrong_first_and_then(self, flight: Flight) -> None:
-        vehicle = flight.main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(flight)
         first = first_trouble(vehicle)
         assert first is not None
         assert first.title == "the GPS lost its fix"
@@ -127,16 +146,14 @@ class TestFlight:
         assert flight.fence.margin_h_m == 1.5
 
     def test_what_it_said(self, flight: Flight) -> None:
-        vehicle = flight.main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(flight)
         assert [said.text for said in vehicle.said] == ["Failsafe activated"]
 
 
 class TestPartialRecords:
     def test_one_of_everything(self, tmp_path: Path) -> None:
         flight = scanned(tmp_path, a_flight())
-        vehicle = flight.main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(flight)
         (request,) = vehicle.requests
         assert (request.outcome, request.code) == ("refused", "OUTSIDE_FENCE")
         assert request.goal_enu == (500.0, 0.0, 2.0)
@@ -148,8 +165,7 @@ class TestPartialRecords:
 
     def test_one_message(self, tmp_path: Path) -> None:
         flight = scanned(tmp_path, [heartbeat()])
-        vehicle = flight.main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(flight)
         assert flight.seconds == 0.0
         assert "never armed" in what_happened(flight, vehicle)
 
@@ -160,15 +176,13 @@ class TestPartialRecords:
 
     def test_a_flight_without_a_position(self, tmp_path: Path) -> None:
         items: list[RecordItem] = [heartbeat(), status(armed=True, landed="IN_AIR"), heartbeat()]
-        vehicle = scanned(tmp_path, items).main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(scanned(tmp_path, items))
         assert vehicle.track.points == []
         assert vehicle.totals.max_up_m is None
 
     def test_a_position_that_is_not_finite_is_none(self, tmp_path: Path) -> None:
         nowhere = PoseItem(1, (float("nan"), 0.0, 0.0), (0.0, 0.0, 0.0), UPRIGHT)
-        vehicle = scanned(tmp_path, [status(armed=True, landed="IN_AIR"), nowhere]).main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(scanned(tmp_path, [status(armed=True, landed="IN_AIR"), nowhere]))
         assert vehicle.track.points == []
 
     def test_a_file_that_was_not_closed(self, tmp_path: Path) -> None:
@@ -203,38 +217,30 @@ class TestRequests:
     @staticmethod
     def told(phase: str, outcome: str, request_id: int = 3) -> DecisionItem:
         verdict = phase == "verdict"
-        return DecisionItem(
-            vehicle=1,
-            request_id=request_id,
-            source="operator",
-            word="goto",
-            phase="verdict" if verdict else "ending",
-            outcome=outcome,
+        return decided(
+            request_id,
+            outcome,
+            phase=phase,
             code="" if outcome in ("accepted", "complete") else "TOO_FAR",
-            sentence="",
-            zone="",
             goal=PointEnu(1.0, 2.0, 3.0) if verdict else None,
             numbers={"leg_m": 4.0} if verdict else {},
         )
 
     def test_verdict_and_ending_are_one_request(self, tmp_path: Path) -> None:
         items = [self.told("verdict", "accepted"), self.told("ending", "complete")]
-        vehicle = scanned(tmp_path, items, 500 * MS).main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(scanned(tmp_path, items, 500 * MS))
         (request,) = vehicle.requests
         assert (request.outcome, request.ending) == ("accepted", "complete")
         assert request.goal_enu == (1.0, 2.0, 3.0)
         assert request.ended_s == pytest.approx(request.t_s + 0.5)
 
     def test_an_ending_whose_verdict_is_missing_is_told_too(self, tmp_path: Path) -> None:
-        vehicle = scanned(tmp_path, [self.told("ending", "timed out")]).main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(scanned(tmp_path, [self.told("ending", "timed out")]))
         assert [(r.outcome, r.ending) for r in vehicle.requests] == [("", "timed out")]
 
     def test_there_is_a_limit(self, tmp_path: Path) -> None:
         items = [self.told("verdict", "refused", number) for number in range(600)]
-        vehicle = scanned(tmp_path, items, MS).main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(scanned(tmp_path, items, MS))
         assert len(vehicle.requests) + vehicle.requests_left_out == 600
         assert vehicle.requests_left_out == 100
 
@@ -244,11 +250,8 @@ class TestReaders:
 
     @staticmethod
     def read(topic: str, item: FrameItem) -> list[object]:
-        source = source_of(topic)
-        assert source is not None
-        assert source.read is not None
         length = ros1.full_length(msgid_in(item.raw))
-        return list(source.read(ros1.codec(length).encode(item.raw, 0, 0)))
+        return list(reader_of(topic)(ros1.codec(length).encode(item.raw, 0, 0)))
 
     def test_gps_raw_int(self) -> None:
         assert self.read("/mavlink/1/1/GPS_RAW_INT", gps(3, 10)) == [Gps(3, 10, 0.8, None)]
@@ -280,16 +283,14 @@ class TestReaders:
         assert self.read("/mavlink/1/1/HEARTBEAT", heartbeat(8, 6)) == []
 
     def test_a_long_text_is_joined(self) -> None:
-        source = source_of("/mavlink/1/1/STATUSTEXT")
-        assert source is not None
-        assert source.read is not None
+        read = reader_of("/mavlink/1/1/STATUSTEXT")
         first, second = (
             frame("STATUSTEXT", "<B50sHB", 3, part.ljust(50, b"\0"), 9, number)
             for number, part in enumerate((b"x" * 50, b"the end"))
         )
         encode = ros1.codec(ros1.full_length(253)).encode
-        assert source.read(encode(first.raw, 0, 0)) == []
-        assert source.read(encode(second.raw, 0, 0)) == [Text(3, "x" * 50 + "the end")]
+        assert read(encode(first.raw, 0, 0)) == []
+        assert read(encode(second.raw, 0, 0)) == [Text(3, "x" * 50 + "the end")]
 
     def test_other_components_and_topics_are_passed_over(self) -> None:
         assert source_of("/mavlink/1/100/HEARTBEAT") is None
@@ -297,19 +298,15 @@ class TestReaders:
         assert source_of("/vehicle/x/state") is None
 
     def test_a_message_that_is_too_short_is_counted(self, tmp_path: Path) -> None:
-        source = source_of("/mavlink/1/1/VIBRATION")
-        assert source is not None
-        assert source.read is not None
+        read = reader_of("/mavlink/1/1/VIBRATION")
         with pytest.raises(struct.error):
-            source.read(b"\0" * 14)
+            read(b"\0" * 14)
 
     def test_a_decision_that_is_none(self) -> None:
-        source = source_of("/gate/decision")
-        assert source is not None
-        assert source.read is not None
-        assert source.read(b"{}") == []
-        assert source.read(b"\xff") == []
-        (fact,) = source.read(
+        read = reader_of("/gate/decision")
+        assert read(b"{}") == []
+        assert read(b"\xff") == []
+        (fact,) = read(
             b'{"vehicle":1,"request_id":2,"word":"arm","phase":"verdict","outcome":"accepted"}'
         )
         assert isinstance(fact, Decision)
@@ -342,30 +339,17 @@ def test_a_gate_condition_reaches_the_findings(tmp_path: Path) -> None:
         LogEvent(START_NS, 3, "state_and_safety", "HOLD: gps_lost: no fix, 0 satellites"),
         FsaItem(1, "HOLDING", 13, "MOVING", "must hold", "OURS", "HOLD", None),
     ]
-    vehicle = scanned(tmp_path, items).main_vehicle()
-    assert vehicle is not None
+    vehicle = vehicle_of(scanned(tmp_path, items))
     assert [f.title for f in vehicle.went_wrong] == ["the gate called HOLD: the GPS was lost"]
     assert [value for _, value in vehicle.lanes.severity.changes] == ["NOMINAL", "HOLD"]
 
 
 def test_at_one_time_the_cause_stands_before_what_follows(tmp_path: Path) -> None:
-    ending = DecisionItem(
-        vehicle=1,
-        request_id=4,
-        source="operator",
-        word="goto",
-        phase="ending",
-        outcome="aborted",
-        code="FENCE_BREACH",
-        sentence="it would come to rest 0.96 m from the edge",
-        zone="yard",
-        goal=None,
-        numbers={},
-    )
+    sentence = "it would come to rest 0.96 m from the edge"
+    ending = decided(4, "aborted", phase="ending", code="FENCE_BREACH", sentence=sentence)
     brake = FsaItem(1, "HOLDING", 13, "MOVING", "breach predicted", "OURS", "NOMINAL", None)
     items: list[RecordItem] = [heartbeat(), status(armed=True, landed="IN_AIR"), ending, brake]
-    vehicle = scanned(tmp_path, items, MS).main_vehicle()
-    assert vehicle is not None
+    vehicle = vehicle_of(scanned(tmp_path, items, MS))
     assert [finding.title for finding in vehicle.went_wrong] == [
         "the gate braked: it would have come out of the fence",
         "goto #4 was aborted",
@@ -381,8 +365,7 @@ class TestWhatTheVehicleSaid:
 
     def test_a_line_of_the_log_where_there_is_no_statustext(self, tmp_path: Path) -> None:
         items: list[RecordItem] = [heartbeat(), status(armed=True, landed="IN_AIR"), self.LINE]
-        vehicle = scanned(tmp_path, items).main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(scanned(tmp_path, items))
         assert [(said.severity, said.text) for said in vehicle.said] == [(3, "Failsafe activated")]
         assert [f.title for f in vehicle.went_wrong] == ["the vehicle's failsafe acted"]
 
@@ -394,8 +377,7 @@ class TestWhatTheVehicleSaid:
             frame("STATUSTEXT", "<B50sHB", 2, text, 0, 0),
             self.LINE,
         ]
-        vehicle = scanned(tmp_path, items).main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(scanned(tmp_path, items))
         assert len(vehicle.said) == len(vehicle.went_wrong) == 1
 
     def test_only_what_was_received_is_the_vehicle_s(self, tmp_path: Path) -> None:
@@ -410,8 +392,7 @@ class TestWhatTheVehicleSaid:
             FrameItem(1, Direction.REFUSED, gps(0, 0).raw),
             FrameItem(1, Direction.REFUSED, heartbeat(3, 1).raw),
         ]
-        vehicle = scanned(tmp_path, items).main_vehicle()
-        assert vehicle is not None
+        vehicle = vehicle_of(scanned(tmp_path, items))
         assert (vehicle.autopilot, vehicle.kind) == ("px4", "quadrotor")
         assert vehicle.messages == 2
         assert vehicle.said == []

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from mcap.reader import make_reader
 from mcap.records import Channel
+from mcap.summary import Summary
 from pymavlink.dialects.v20 import all as dialect
 from pymavlink.generator.mavcrc import x25crc
 
@@ -73,6 +75,35 @@ def position_frame(number: int) -> FrameItem:
     return FrameItem(0, Direction.RECEIVED, frame_v2(32, payload, number & 0xFF))
 
 
+def decided(
+    number: int,
+    outcome: str,
+    *,
+    phase: str = "verdict",
+    word: str = "goto",
+    goal: PointEnu | None = None,
+    code: str = "",
+    sentence: str = "",
+    zone: str = "",
+    source: str = "operator",
+    numbers: Mapping[str, float | None] | None = None,
+) -> DecisionItem:
+    """What is decided on a request of vehicle 1."""
+    return DecisionItem(
+        vehicle=1,
+        request_id=number,
+        source=source,
+        word=word,
+        phase="verdict" if phase == "verdict" else "ending",
+        outcome=outcome,
+        code=code,
+        sentence=sentence,
+        zone=zone,
+        goal=goal,
+        numbers=dict(numbers or {}),
+    )
+
+
 def messages_of(path: Path) -> list[Logged]:
     """Every message that can be read, in file order."""
     topics: dict[int, str] = {}
@@ -96,6 +127,14 @@ def record(directory: Path, items: Iterable[RecordItem], step_ns: int = 20 * MS)
             assert recorder.tick(now_ns) == []
     assert recorder.close(now_ns)
     return recorder.path
+
+
+def summary_of(path: Path) -> Summary:
+    """As the library's indexed reader finds it."""
+    with open(path, "rb") as file:
+        found = make_reader(file).get_summary()
+    assert found is not None
+    return found
 
 
 def without_a_record_s_head(path: Path, opcode: int) -> int:
@@ -127,13 +166,9 @@ def a_flight() -> list[RecordItem]:
         FsaItem(1, "HOVERING", 1, "GROUNDED", "airborne", "ours", "nominal", None),
         SetpointItem(1, (1.0, 2.0, -3.0), None),
         StopItem(1, (1.0, 2.0, -3.0), (1.0, 5.0, -3.0)),
-        DecisionItem(
-            vehicle=1,
-            request_id=7,
-            source="operator",
-            word="goto",
-            phase="verdict",
-            outcome="refused",
+        decided(
+            7,
+            "refused",
             code="OUTSIDE_FENCE",
             sentence="500.0 m east is 350.0 m outside home",
             zone="home",

@@ -8,14 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mcap.reader import make_reader
-from mcap_protobuf.decoder import DecoderFactory
 
 from gcs.frames import enu_from_ned
 from gcs.record.derived.vehicle_json import euler_deg
 from gcs.record.topics import Grid
 from gcs.report import (
-    DecisionItem,
     FenceItem,
     GeodeticItem,
     InputItem,
@@ -27,16 +24,22 @@ from gcs.report import (
     SetpointItem,
     StatusItem,
 )
-from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
+from tests.unit.record.flights import (
+    MS,
+    SECOND,
+    START_NS,
+    a_flight,
+    decided,
+    messages_of,
+    record,
+    summary_of,
+)
 from tests.unit.record.viewer import fsa, pictures, pose, readings, turned
 
 
 def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None:
     path = record(tmp_path, a_flight())
-    with open(path, "rb") as file:
-        reader = make_reader(file, decoder_factories=[DecoderFactory()])
-        summary = reader.get_summary()
-    assert summary is not None
+    summary = summary_of(path)
     schemas = {
         channel.topic: summary.schemas[channel.schema_id].name
         for channel in summary.channels.values()
@@ -234,19 +237,8 @@ def test_a_refused_goal_is_recorded_with_reason_and_numbers(tmp_path: Path) -> N
 
 
 def test_a_goal_that_is_no_number_is_still_json(tmp_path: Path) -> None:
-    item = DecisionItem(
-        1,
-        1,
-        "operator",
-        "goto",
-        "verdict",
-        "refused",
-        "NON_FINITE",
-        "north is not a number",
-        "",
-        PointEnu(1.0, math.nan, math.inf),
-        {"distance_m": math.nan},
-    )
+    goal, numbers = PointEnu(1.0, math.nan, math.inf), {"distance_m": math.nan}
+    item = decided(1, "refused", code="NON_FINITE", goal=goal, numbers=numbers)
     (decision,) = readings(record(tmp_path, [item]), "/gate/decision")
     assert decision["goal"] == {"east_m": 1.0, "north_m": None, "up_m": None}
     assert decision["numbers"] == {"distance_m": None}
@@ -318,9 +310,7 @@ def test_a_cleared_mission_disappears(tmp_path: Path) -> None:
 
 
 def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:
-    with open(record(tmp_path, a_flight()), "rb") as file:
-        summary = make_reader(file).get_summary()
-    assert summary is not None
+    summary = summary_of(record(tmp_path, a_flight()))
     fields = {
         schema.name: [
             (name, "goal" if name == "goal" else inner["type"])
@@ -353,9 +343,7 @@ def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:
 
 
 def test_json_schemas_use_only_what_viewers_read(tmp_path: Path) -> None:
-    with open(record(tmp_path, a_flight()), "rb") as file:
-        summary = make_reader(file).get_summary()
-    assert summary is not None
+    summary = summary_of(record(tmp_path, a_flight()))
     found = [s for s in summary.schemas.values() if s.encoding == "jsonschema"]
     assert len(found) == 8
 

@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from gcs.report import (
-    DecisionItem,
     FenceItem,
     FenceShape,
     LogEvent,
@@ -18,36 +17,10 @@ from gcs.report import (
     SetpointItem,
     StopItem,
 )
-from tests.unit.record.flights import MS, SECOND, START_NS, messages_of, record
+from tests.unit.record.flights import MS, SECOND, START_NS, decided, messages_of, record
 from tests.unit.record.viewer import fsa, pictures, pose, readings
 
 FAR = PointEnu(500.0, 0.0, 2.0)
-
-
-def decision(
-    number: int,
-    outcome: str,
-    *,
-    phase: str = "verdict",
-    word: str = "goto",
-    goal: PointEnu | None = None,
-    code: str = "",
-    sentence: str = "",
-    numbers: dict[str, float | None] | None = None,
-) -> DecisionItem:
-    return DecisionItem(
-        vehicle=1,
-        request_id=number,
-        source="operator",
-        word=word,
-        phase="verdict" if phase == "verdict" else "ending",
-        outcome=outcome,
-        code=code,
-        sentence=sentence,
-        zone="",
-        goal=goal,
-        numbers=numbers or {},
-    )
 
 
 def drawn(path: Path, topic: str) -> list[Any]:
@@ -60,7 +33,7 @@ def drawn(path: Path, topic: str) -> list[Any]:
 
 def test_a_refused_goal_is_a_red_ball_with_its_reason(tmp_path: Path) -> None:
     goal = PointEnu(10.0, 5.0, 2.0)
-    refused = decision(3, "refused", goal=goal, code="TOO_CLOSE", sentence="0.4 m from the mast")
+    refused = decided(3, "refused", goal=goal, code="TOO_CLOSE", sentence="0.4 m from the mast")
     path = record(tmp_path, [pose((0.0, 0.0, -2.0)), refused])
     (entity,) = drawn(path, "/gate/goals")
     (ball,) = entity.spheres
@@ -74,14 +47,14 @@ def test_a_refused_goal_is_a_red_ball_with_its_reason(tmp_path: Path) -> None:
 
 
 def test_an_accepted_goal_is_green_and_says_what_was_asked(tmp_path: Path) -> None:
-    path = record(tmp_path, [decision(3, "accepted", goal=PointEnu(3.0, 0.0, 2.0))])
+    path = record(tmp_path, [decided(3, "accepted", goal=PointEnu(3.0, 0.0, 2.0))])
     (entity,) = drawn(path, "/gate/goals")
     assert entity.spheres[0].color.g > 0.8 > 0.3 > entity.spheres[0].color.r
     assert [text.text for text in entity.texts] == ["goto 3 0 2"]
 
 
 def test_the_reason_for_a_goal_out_of_sight_stands_near_the_vehicle(tmp_path: Path) -> None:
-    refused = decision(3, "refused", goal=FAR, code="OUTSIDE_FENCE", sentence="350.2 m outside")
+    refused = decided(3, "refused", goal=FAR, code="OUTSIDE_FENCE", sentence="350.2 m outside")
     path = record(tmp_path, [pose((0.0, 0.0, -2.0)), refused])
     (entity,) = drawn(path, "/gate/goals")
     at = entity.texts[0].pose.position
@@ -90,8 +63,8 @@ def test_the_reason_for_a_goal_out_of_sight_stands_near_the_vehicle(tmp_path: Pa
 
 
 def test_an_abort_and_a_refusal_without_a_goal_are_told_at_the_vehicle(tmp_path: Path) -> None:
-    abort = decision(4, "aborted", phase="ending", code="FENCE_BREACH", sentence="braked")
-    photo = decision(5, "refused", word="photo", code="BUSY", sentence="moving")
+    abort = decided(4, "aborted", phase="ending", code="FENCE_BREACH", sentence="braked")
+    photo = decided(5, "refused", word="photo", code="BUSY", sentence="moving")
     path = record(tmp_path, [pose((1.0, 2.0, -3.0)), abort, photo])
     entities = drawn(path, "/gate/goals")
     assert [e.texts[0].text for e in entities] == [
@@ -105,9 +78,9 @@ def test_an_abort_and_a_refusal_without_a_goal_are_told_at_the_vehicle(tmp_path:
 
 
 def test_what_completes_and_what_has_no_place_is_not_drawn(tmp_path: Path) -> None:
-    nowhere = decision(1, "refused", code="NO_VEHICLE")
-    odd = decision(2, "refused", goal=PointEnu(math.nan, 0.0, 0.0), code="NON_FINITE")
-    done = decision(3, "complete", phase="ending")
+    nowhere = decided(1, "refused", code="NO_VEHICLE")
+    odd = decided(2, "refused", goal=PointEnu(math.nan, 0.0, 0.0), code="NON_FINITE")
+    done = decided(3, "complete", phase="ending")
     path = record(tmp_path, [nowhere, odd, pose((0.0, 0.0, 0.0)), done])
     assert drawn(path, "/gate/goals") == []
 
@@ -195,11 +168,11 @@ def test_the_fence_is_a_json_topic_too(tmp_path: Path) -> None:
 def test_the_table_of_requests_grows_and_stands_after_any_seek(tmp_path: Path) -> None:
     flight: list[RecordItem] = [
         fsa("HOVERING"),
-        decision(1, "accepted", goal=PointEnu(3.0, 0.0, 2.0)),
-        decision(2, "refused", goal=FAR, code="OUTSIDE_FENCE", sentence="350.2 m outside"),
-        decision(1, "aborted", phase="ending", code="OPERATOR", sentence="stopped"),
-        decision(3, "accepted", word="arm"),
-        decision(3, "complete", phase="ending", sentence="Complete"),
+        decided(1, "accepted", goal=PointEnu(3.0, 0.0, 2.0)),
+        decided(2, "refused", goal=FAR, code="OUTSIDE_FENCE", sentence="350.2 m outside"),
+        decided(1, "aborted", phase="ending", code="OPERATOR", sentence="stopped"),
+        decided(3, "accepted", word="arm"),
+        decided(3, "complete", phase="ending", sentence="Complete"),
     ]
     tables = readings(record(tmp_path, flight, step_ns=SECOND), "/gate/requests")
     assert [len(table["rows"]) for table in tables] == [0, 1, 2, 2, 3, 3]
@@ -218,7 +191,7 @@ def test_the_table_of_requests_grows_and_stands_after_any_seek(tmp_path: Path) -
 
 
 def test_a_burst_of_requests_does_not_write_the_table_as_often(tmp_path: Path) -> None:
-    burst: list[RecordItem] = [decision(n, "refused", code="BUSY") for n in range(1000)]
+    burst: list[RecordItem] = [decided(n, "refused", code="BUSY") for n in range(1000)]
     tables = readings(record(tmp_path, burst, step_ns=2 * MS), "/gate/requests")
     assert len(tables) <= 12
     assert tables[-1]["rows"][0]["at_s"] == pytest.approx(2.0, abs=0.01)
@@ -229,9 +202,9 @@ def test_a_request_is_an_event_from_verdict_to_ending_and_a_refusal_a_moment(
     tmp_path: Path,
 ) -> None:
     flight: list[RecordItem] = [
-        decision(1, "accepted", goal=PointEnu(3.0, 0.0, 2.0)),
-        decision(2, "refused", word="photo", code="BUSY"),
-        decision(1, "complete", phase="ending"),
+        decided(1, "accepted", goal=PointEnu(3.0, 0.0, 2.0)),
+        decided(2, "refused", word="photo", code="BUSY"),
+        decided(1, "complete", phase="ending"),
     ]
     refusal, flown = pictures(record(tmp_path, flight, step_ns=SECOND), "/events")
     assert refusal.start_time == refusal.end_time
@@ -242,7 +215,7 @@ def test_a_request_is_an_event_from_verdict_to_ending_and_a_refusal_a_moment(
 
 
 def test_numbers_of_a_decision_are_rounded_for_people(tmp_path: Path) -> None:
-    exact = decision(
+    exact = decided(
         1, "refused", numbers={"outside_m": 350.20000000000005, "lat_deg": 47.39774212345678}
     )
     (found,) = readings(record(tmp_path, [exact]), "/gate/decision")

@@ -10,7 +10,6 @@ from typing import Any
 
 import pytest
 from mcap.opcode import Opcode
-from mcap.reader import make_reader
 
 from gcs.record.viewer.layout import ANY_FLIGHT, layout
 from gcs.record.writer import Recorder
@@ -22,6 +21,7 @@ from tests.unit.record.flights import (
     a_flight,
     messages_of,
     record,
+    summary_of,
     without_a_record_s_head,
 )
 
@@ -209,9 +209,7 @@ def test_the_layout_names_only_topics_that_the_file_has(flight: Path, tmp_path: 
 
 def test_paths_into_json_topics_name_fields_of_their_schema(flight: Path) -> None:
     text = gcs_log("layout", flight).output
-    with open(flight, "rb") as file:
-        summary = make_reader(file).get_summary()
-    assert summary is not None
+    summary = summary_of(flight)
     fields = {
         channel.topic: json.loads(summary.schemas[channel.schema_id].data)["properties"]
         for channel in summary.channels.values()

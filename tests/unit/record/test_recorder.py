@@ -21,8 +21,6 @@ from gcs.mcap_file.writer import (
     FoxgloveBackend,
     GuardedFile,
     McapBackend,
-    RawFile,
-    open_exclusive,
 )
 from gcs.record import ros1, writer
 from gcs.record.derived import Derived
@@ -43,6 +41,7 @@ from gcs.report import (
     RecordItem,
 )
 from tests.shares import examples
+from tests.unit.record.disks import Disk
 from tests.unit.record.flights import (
     MS,
     SECOND,
@@ -54,38 +53,10 @@ from tests.unit.record.flights import (
     messages_of,
     position_frame,
     record,
+    summary_of,
 )
 
 BACKENDS = [FoxgloveBackend, McapBackend]
-
-
-class Disk:
-    """A disk with `free` bytes, shared by all files opened through it."""
-
-    def __init__(self, free: int) -> None:
-        self.free = free
-        self.files: list[Path] = []
-
-    def open(self, path: Path) -> RawFile:
-        self.files.append(path)
-        return _DiskFile(self, open_exclusive(path))
-
-
-class _DiskFile:
-    def __init__(self, disk: Disk, raw: RawFile) -> None:
-        self._disk = disk
-        self._raw = raw
-
-    def write(self, data: memoryview, /) -> int:
-        if self._disk.free == 0:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        fits = min(len(data), self._disk.free)
-        self._disk.free -= fits
-        self._raw.write(data[:fits])
-        return fits
-
-    def close(self) -> None:
-        self._raw.close()
 
 
 # ------------------------------------------------------------------------------ a good disk
@@ -103,11 +74,9 @@ def test_what_was_written_is_read_back_in_order(
     found = messages_of(recorder.path)
     assert [ros1.rebuild(message.data) for message in found] == [item.raw for item in items]
     assert [message.log_time_ns for message in found] == [START_NS + n * MS for n in range(100)]
-    with open(recorder.path, "rb") as file:
-        summary = make_reader(file).get_summary()
-    assert summary is not None
-    assert summary.statistics is not None
-    assert summary.statistics.message_count == 100
+    statistics = summary_of(recorder.path).statistics
+    assert statistics is not None
+    assert statistics.message_count == 100
 
 
 def test_the_file_is_named_after_start_and_session(tmp_path: Path) -> None:
@@ -546,8 +515,7 @@ def test_a_file_that_has_its_size_is_closed_and_the_next_begins_without_a_gap(
     assert [ros1.rebuild(message.data) for message in found] == [item.raw for item in items]
     for path in recorder.parts[:-1]:
         assert 20_000 <= path.stat().st_size < 50_000
-        with open(path, "rb") as file:
-            assert make_reader(file).get_summary() is not None
+        assert summary_of(path).chunk_indexes
 
 
 def test_a_file_that_has_its_age_is_followed_by_one_with_all_that_was_said_once(
