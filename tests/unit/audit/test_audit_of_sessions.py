@@ -46,6 +46,7 @@ from gcs.wire.messages import Heartbeat
 from tests.audits import RecordedSession, audited, kind_of, read, resealed, with_data
 from tests.unit.cli.command_line import gcs
 from tests.unit.record.disks import Disk
+from tests.unit.record.flights import opened
 
 START_NS = 1_767_225_600_000_000_000
 BEAT = Heartbeat(
@@ -234,9 +235,7 @@ def test_a_policy_of_another_version_has_this_ones_defaults() -> None:
 def two_parts(tmp_path: Path, beats: FrameWriter) -> list[Path]:
     """A disk is full for six seconds."""
     disk = Disk(1 << 30)
-    recorder = Recorder.open(
-        tmp_path, "x", "20260101-000000", START_NS, opener=disk.open, sealed=True
-    )
+    recorder = opened(tmp_path, "x", opener=disk.open, sealed=True)
     session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
     session.feed(Datagram(0, beats.write(BEAT)))
     session.wait(3.0)
@@ -276,7 +275,7 @@ def test_a_part_alone_is_refused_with_the_name_of_the_others(two_parts: list[Pat
 def test_files_that_follow_one_another_without_a_hole_are_one_record(
     tmp_path: Path, beats: FrameWriter
 ) -> None:
-    recorder = Recorder.open(tmp_path, "x", "20260101-000000", START_NS, sealed=True)
+    recorder = opened(tmp_path, "x", sealed=True)
     session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
     session.feed(Datagram(0, beats.write(BEAT)))
     session.wait(1.2)
@@ -296,7 +295,7 @@ def test_files_that_follow_one_another_without_a_hole_are_one_record(
 def test_sessions_are_told_apart(tmp_path: Path) -> None:
     paths = []
     for name in ("a", "b"):
-        recorder = Recorder.open(tmp_path, name, "20260101-000000", START_NS, sealed=True)
+        recorder = opened(tmp_path, name, sealed=True)
         session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
         session.feed(LinkEvent(0, "open"))
         recorder.close(session.now_ns)
@@ -359,7 +358,7 @@ def _rewritten(source: Path, target: Path, **to: object) -> Path:
 @pytest.fixture
 def flown(tmp_path: Path, beats: FrameWriter) -> Path:
     """By this version, here: of another one only what happened is compared."""
-    recorder = Recorder.open(tmp_path, "y", "20260101-000000", START_NS, sealed=True)
+    recorder = opened(tmp_path, "y", sealed=True)
     own = replace(
         set_up(recorder.path.stem), version=gcs_package.__version__, environment=environment()
     )
@@ -397,7 +396,7 @@ def test_a_record_as_either_library_writes_it_is_numbered_right(
     backend: type[Backend], tmp_path: Path, beats: FrameWriter, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(writer, "best_backend", backend)
-    recorder = Recorder.open(tmp_path, "z", "20260101-000000", START_NS, sealed=True)
+    recorder = opened(tmp_path, "z", sealed=True)
     session = RecordedSession(recorder, set_up(recorder.path.stem), START_NS)
     for _ in range(2):
         session.feed(Datagram(0, beats.write(BEAT)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from mcap.reader import make_reader
 from mcap.records import Channel
@@ -116,9 +116,14 @@ def messages_of(path: Path) -> list[Logged]:
     return found
 
 
+def opened(directory: Path, name: str = "f", *, sealed: bool = False, **how: Any) -> Recorder:
+    """A recorder of `20260101-000000_<name>.mcap`; `how` as for `Recorder.open`."""
+    return Recorder.open(directory, name, "20260101-000000", START_NS, sealed=sealed, **how)
+
+
 def record(directory: Path, items: Iterable[RecordItem], step_ns: int = 20 * MS) -> Path:
     """Record items, `step_ns` apart, flushing when due; the closed file."""
-    recorder = Recorder.open(directory, "test", "20260101-000000", START_NS)
+    recorder = opened(directory, "test")
     now_ns = START_NS
     for item in items:
         recorder.write(item, now_ns)

@@ -18,7 +18,6 @@ from gcs.mcap_file.errors import BadRecordError
 from gcs.mcap_file.reader import Reading
 from gcs.record.check import check
 from gcs.record.parts import Rotation
-from gcs.record.writer import Recorder
 from gcs.report import ParamItem, PoseItem
 from tests.shares import examples
 from tests.unit.cli.command_line import Ended, gcs
@@ -28,6 +27,7 @@ from tests.unit.record.flights import (
     START_NS,
     a_flight,
     messages_of,
+    opened,
     position_frame,
     record,
 )
@@ -139,20 +139,6 @@ def test_of_many_findings_a_few_are_told_and_all_counted(tmp_path: Path) -> None
     assert (found["good"], found["counts"]) == (False, {"message": 100})
 
 
-@pytest.mark.parametrize("command", [["check"], ["cut", "--to", "1"], ["merge"]])
-@pytest.mark.parametrize("data", [b"", b"a text of some length"])
-def test_what_is_no_record_is_a_clear_error(
-    tmp_path: Path, command: list[str], data: bytes
-) -> None:
-    bad, out = tmp_path / "bad.mcap", tmp_path / "out.mcap"
-    bad.write_bytes(data)
-    output = [] if command == ["check"] else ["-o", str(out)]
-    ended = gcs_log(*command, bad, *output)
-    assert ended.exit_code == 4
-    assert "bad.mcap: " in ended.output
-    assert not out.exists()
-
-
 @pytest.mark.slow
 @settings(max_examples=examples(60), deadline=None)
 @given(data=st.data())
@@ -217,32 +203,11 @@ def test_a_cut_around_a_request(flight: Path, tmp_path: Path) -> None:
     assert (unknown.exit_code, "its requests are 7 to 7" in unknown.output) == (2, True)
 
 
-@pytest.mark.parametrize(
-    "options",
-    [(), ("--from", "3", "--to", "2"), ("--around", "7", "--to", "2"), ("--from", "1000")],
-)
-def test_a_stretch_that_is_none_is_a_usage_error_and_leaves_no_file(
-    flight: Path, tmp_path: Path, options: tuple[str, ...]
-) -> None:
-    out = tmp_path / "cut.mcap"
-    assert gcs_log("cut", flight, *options, "-o", out).exit_code == 2
-    assert not out.exists()
-
-
-def test_nothing_is_overwritten(flight: Path) -> None:
-    before = flight.read_bytes()
-    assert gcs_log("cut", flight, "--to", "5", "-o", flight).exit_code == 2
-    assert gcs_log("merge", flight, "-o", flight).exit_code == 2
-    assert flight.read_bytes() == before
-
-
 # ----------------------------------------------------------------------------------- merge
 
 
 def test_parts_become_one_record(tmp_path: Path) -> None:
-    recorder = Recorder.open(
-        tmp_path, "f", "20260101-000000", START_NS, rotation=Rotation(age_ns=5 * SECOND)
-    )
+    recorder = opened(tmp_path, rotation=Rotation(age_ns=5 * SECOND))
     for item in a_flight():
         recorder.write(item, START_NS)
     for number in range(100):

@@ -16,9 +16,8 @@ from gcs.mcap_file.errors import BadRecordError
 from gcs.mcap_file.reader import Reading
 from gcs.record import compact as module
 from gcs.record.compact import NotCompactedError, compact, compact_in_background
-from gcs.record.writer import Recorder
 from tests.unit.cli.command_line import gcs
-from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, record
+from tests.unit.record.flights import MS, SECOND, START_NS, a_flight, messages_of, opened, record
 
 pytestmark = pytest.mark.slow
 
@@ -160,7 +159,7 @@ def test_the_command_tells_what_it_did(flight: Path) -> None:
 
 
 def test_the_command_on_a_killed_file_says_what_to_do(tmp_path: Path) -> None:
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS)
+    recorder = opened(tmp_path)
     recorder.write(a_flight()[5], START_NS)
     recorder.tick(START_NS + SECOND)
     killed = tmp_path / "killed.mcap"

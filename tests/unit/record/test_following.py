@@ -10,8 +10,8 @@ import pytest
 from gcs.mcap_file.errors import BadRecordError
 from gcs.mcap_file.format import Message, Record
 from gcs.mcap_file.reader import Following
-from gcs.record.writer import FLUSH_NS, Recorder
-from tests.unit.record.flights import MS, START_NS, a_flight, messages_of, position_frame
+from gcs.record.writer import FLUSH_NS
+from tests.unit.record.flights import MS, START_NS, a_flight, messages_of, opened, position_frame
 
 
 def messages(records: list[Record]) -> list[bytes]:
@@ -19,7 +19,7 @@ def messages(records: list[Record]) -> list[bytes]:
 
 
 def test_each_look_gives_what_was_flushed_since_the_last_and_nothing_twice(tmp_path: Path) -> None:
-    recorder = Recorder.open(tmp_path, "growing", "20260101-000000", START_NS)
+    recorder = opened(tmp_path, "growing")
     recorder.tick(START_NS)
     following = Following(recorder.path)
     looks = []
@@ -42,7 +42,7 @@ def test_each_look_gives_what_was_flushed_since_the_last_and_nothing_twice(tmp_p
 
 
 def test_a_record_is_over_when_a_copy_takes_its_place(tmp_path: Path) -> None:
-    recorder = Recorder.open(tmp_path, "replaced", "20260101-000000", START_NS)
+    recorder = opened(tmp_path, "replaced")
     for number, item in enumerate(a_flight()):
         recorder.write(item, START_NS + number * MS)
     recorder.tick(START_NS + FLUSH_NS)

@@ -12,7 +12,6 @@ import pytest
 from mcap.opcode import Opcode
 
 from gcs.record.viewer.layout import ANY_FLIGHT, layout
-from gcs.record.writer import Recorder
 from tests.unit.cli.command_line import Ended, gcs
 from tests.unit.record.flights import (
     MS,
@@ -20,6 +19,7 @@ from tests.unit.record.flights import (
     START_NS,
     a_flight,
     messages_of,
+    opened,
     record,
     summary_of,
     without_a_record_s_head,
@@ -38,7 +38,7 @@ def flight(tmp_path: Path) -> Path:
 @pytest.fixture
 def killed_flight(tmp_path: Path) -> Path:
     """Flushed, and never closed."""
-    recorder = Recorder.open(tmp_path, "killed", "20260101-000000", START_NS)
+    recorder = opened(tmp_path, "killed")
     for number, item in enumerate(a_flight()):
         recorder.write(item, START_NS + number * 30 * MS)
     recorder.tick(START_NS + SECOND)
@@ -46,6 +46,62 @@ def killed_flight(tmp_path: Path) -> Path:
     killed.write_bytes(recorder.path.read_bytes())
     recorder.close(START_NS + SECOND)
     return killed
+
+
+WRONG = [
+    *(
+        (f"{command} {bad}", 4, f"{bad}.mcap: {why}")
+        for command in (
+            "info",
+            "layout",
+            "check",
+            "recover -o out",
+            "cut --to 1 -o out",
+            "merge -o out",
+        )
+        for bad, why in (
+            *(("empty", "the file is empty"), ("text", "not an MCAP file")),
+            *(("begun", "not an MCAP file"), ("zeros", "not an MCAP file")),
+        )
+    ),
+    *(
+        (f"{command} -o taken", 2, "taken.mcap: exists already")
+        for command in ("recover killed", "cut flight --to 1", "merge flight")
+    ),
+    ("recover killed -o nowhere/out", 7, "cannot write"),
+    ("layout flight -o nowhere/out", 7, "cannot write"),
+    ("info", 2, "--last"),
+    ("info nothing", 2, "nothing.mcap"),
+    ("cut flight -o out", 2, "--from"),
+    ("cut flight --from 3 --to 2 -o out", 2, ""),
+    ("cut flight --around 7 --to 2 -o out", 2, "--around"),
+    ("cut flight --from 1000 -o out", 2, "there is no message from 1000"),
+]
+"""What is typed, the exit code, and what is told."""
+
+
+@pytest.mark.parametrize(("typed", "code", "told"), WRONG, ids=[row[0] for row in WRONG])
+def test_what_cannot_be_done_is_told_and_leaves_no_file(
+    flight: Path, killed_flight: Path, tmp_path: Path, typed: str, code: int, told: str
+) -> None:
+    folder = tmp_path / "all"
+    folder.mkdir()
+    for name, data in {
+        "flight": flight.read_bytes(),
+        "killed": killed_flight.read_bytes(),
+        "taken": b"precious",
+        "empty": b"",
+        "text": b"a text of some length",
+        "begun": b"\x89MCAP",
+        "zeros": bytes(100),
+    }.items():
+        (folder / f"{name}.mcap").write_bytes(data)
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    command, *words = typed.split()
+    ended = gcs_log(command, *(w if w[0] in "-0123456789" else folder / f"{w}.mcap" for w in words))
+    assert (ended.exit_code, told in ended.output) == (code, True), ended.output
+    assert code != 4 or "hint:" in ended.output
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
 
 
 # ----------------------------------------------------------------------------------- info
@@ -85,7 +141,7 @@ def test_info_works_on_a_killed_file_and_says_what_to_do(killed_flight: Path) ->
 
 
 def test_info_reports_silence_as_a_gap(tmp_path: Path) -> None:
-    recorder = Recorder.open(tmp_path, "gap", "20260101-000000", START_NS)
+    recorder = opened(tmp_path, "gap")
     item = a_flight()[5]
     for at_s in (0, 1, 5, 6):
         recorder.write(item, START_NS + at_s * SECOND)
@@ -104,19 +160,6 @@ def test_a_burst_has_no_rate(tmp_path: Path) -> None:
     path = record(tmp_path, [a_flight()[5]] * 50, step_ns=1 * MS)
     assert gcs_log("info", path, "--json").output.count('"hz":0.0') == 1
     assert re.search(r"\n/\S+ +50 +-  ", gcs_log("info", path).output)
-
-
-@pytest.mark.parametrize("command", ["info", "layout"])
-@pytest.mark.parametrize("data", [b"", b"#!/bin/sh\n"])
-def test_a_file_that_is_no_record_is_a_clear_error(
-    tmp_path: Path, command: str, data: bytes
-) -> None:
-    bad = tmp_path / "bad.mcap"
-    bad.write_bytes(data)
-    result = gcs_log(command, bad)
-    assert result.exit_code == 4
-    assert "bad.mcap: " in result.output
-    assert "hint:" in result.output
 
 
 def test_several_files_are_told_one_after_the_other(flight: Path, killed_flight: Path) -> None:
@@ -152,15 +195,6 @@ def test_a_file_whose_name_is_not_utf8_is_told_in_json_too(flight: Path, tmp_pat
         pytest.skip("this file system has no such names")
     found = json.loads(gcs_log("info", other, "--json").output)
     assert found["path"].endswith("\\udcff.mcap")
-
-
-def test_without_a_file_it_is_a_usage_error() -> None:
-    ended = gcs_log("info")
-    assert (ended.exit_code, "--last" in ended.output) == (2, True)
-
-
-def test_a_file_that_is_not_there_is_a_usage_error(tmp_path: Path) -> None:
-    assert gcs_log("info", tmp_path / "nothing.mcap").exit_code == 2
 
 
 # --------------------------------------------------------------------------------- layout
@@ -242,12 +276,6 @@ def test_without_a_file_the_layout_is_for_any_flight() -> None:
     assert topics_in(json.loads(result.output)) <= ANY_FLIGHT
 
 
-def test_a_layout_that_cannot_be_written_is_said(flight: Path, tmp_path: Path) -> None:
-    result = gcs_log("layout", flight, "-o", tmp_path / "no folder" / "layout.json")
-    assert result.exit_code == 7
-    assert "cannot write" in result.output
-
-
 # -------------------------------------------------------------------------------- recover
 
 
@@ -265,29 +293,6 @@ def test_recover_json(killed_flight: Path, tmp_path: Path) -> None:
     found = json.loads(result.output)
     assert found["source_closed"] is False
     assert found["messages"] == len(messages_of(killed_flight))
-
-
-def test_recover_does_not_overwrite(flight: Path, killed_flight: Path) -> None:
-    before = flight.read_bytes()
-    result = gcs_log("recover", killed_flight, "-o", flight)
-    assert result.exit_code == 2
-    assert "exists already" in result.output
-    assert flight.read_bytes() == before
-
-
-def test_recover_to_an_impossible_place_is_a_recorder_error(
-    killed_flight: Path, tmp_path: Path
-) -> None:
-    result = gcs_log("recover", killed_flight, "-o", tmp_path / "no folder" / "x.mcap")
-    assert result.exit_code == 7
-
-
-def test_recover_of_what_is_no_record(tmp_path: Path) -> None:
-    bad = tmp_path / "bad.mcap"
-    bad.write_bytes(b"\0" * 100)
-    result = gcs_log("recover", bad, "-o", tmp_path / "x.mcap")
-    assert result.exit_code == 4
-    assert not (tmp_path / "x.mcap").exists()
 
 
 def test_a_copy_of_a_complete_file_is_said_to_be_one(flight: Path, tmp_path: Path) -> None:

@@ -51,6 +51,7 @@ from tests.unit.record.flights import (
     frame_v1,
     frame_v2,
     messages_of,
+    opened,
     position_frame,
     record,
     summary_of,
@@ -66,7 +67,7 @@ BACKENDS = [FoxgloveBackend, McapBackend]
 def test_what_was_written_is_read_back_in_order(
     tmp_path: Path, backend: type[FoxgloveBackend | McapBackend]
 ) -> None:
-    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS, backend=backend())
+    recorder = opened(tmp_path, "test", backend=backend())
     items = [position_frame(number) for number in range(100)]
     for number, item in enumerate(items):
         recorder.write(item, START_NS + number * MS)
@@ -87,8 +88,8 @@ def test_the_file_is_named_after_start_and_session(tmp_path: Path) -> None:
 
 
 def test_two_sessions_of_one_second_do_not_share_a_file(tmp_path: Path) -> None:
-    first = Recorder.open(tmp_path, "flight", "20260101-000000", START_NS)
-    second = Recorder.open(tmp_path, "flight", "20260101-000000", START_NS)
+    first = opened(tmp_path, "flight")
+    second = opened(tmp_path, "flight")
     assert first.path.name == "20260101-000000_flight.mcap"
     assert second.path.name == "20260101-000000_flight-2.mcap"
     assert first.close(START_NS)
@@ -99,7 +100,7 @@ def test_an_unwritable_folder_is_an_error_at_start(tmp_path: Path) -> None:
     blocked = tmp_path / "logs"
     blocked.write_text("a file where the folder should be")
     with pytest.raises(RecorderError, match="logs: cannot record"):
-        Recorder.open(blocked, "flight", "20260101-000000", START_NS)
+        opened(blocked, "flight")
 
 
 @settings(max_examples=examples(30), deadline=None)
@@ -108,7 +109,7 @@ def test_log_time_is_strictly_increasing_whatever_the_clock_does(
     tmp_path_factory: pytest.TempPathFactory, steps: list[int]
 ) -> None:
     folder = tmp_path_factory.mktemp("ties")
-    recorder = Recorder.open(folder, "ties", "20260101-000000", START_NS)
+    recorder = opened(folder, "ties")
     now_ns = START_NS
     for number, step_ns in enumerate(steps):
         now_ns += step_ns
@@ -121,7 +122,7 @@ def test_log_time_is_strictly_increasing_whatever_the_clock_does(
 
 
 def test_flushes_are_due_on_a_grid(tmp_path: Path) -> None:
-    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
+    recorder = opened(tmp_path, "test")
     assert recorder.deadline_ns == START_NS + 800 * MS
     recorder.tick(START_NS + 930 * MS)  # late: the next is not put off, and none is made up for
     assert recorder.deadline_ns == START_NS + 1600 * MS
@@ -131,7 +132,7 @@ def test_flushes_are_due_on_a_grid(tmp_path: Path) -> None:
 
 
 def test_what_was_flushed_is_in_the_file_without_closing_it(tmp_path: Path) -> None:
-    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
+    recorder = opened(tmp_path, "test")
     for number in range(10):
         recorder.write(position_frame(number), START_NS + number * 40 * MS)
     recorder.tick(START_NS + 800 * MS)
@@ -240,9 +241,7 @@ def test_a_full_disk_is_told_at_once_and_a_second_part_begins_when_there_is_room
     tmp_path: Path, backend: type[FoxgloveBackend | McapBackend]
 ) -> None:
     disk = Disk(free=6_000)
-    recorder = Recorder.open(
-        tmp_path, "flight", "20260101-000000", START_NS, backend=backend(), opener=disk.open
-    )
+    recorder = opened(tmp_path, "flight", backend=backend(), opener=disk.open)
     now_ns, number, failed_ns = START_NS, 0, 0
     while not failed_ns and number < 2000:
         recorder.write(position_frame(number), now_ns)
@@ -281,7 +280,7 @@ def test_a_full_disk_is_told_at_once_and_a_second_part_begins_when_there_is_room
 
 def test_a_disk_that_fails_again_leads_to_a_third_part(tmp_path: Path) -> None:
     disk = Disk(free=0)
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder = opened(tmp_path, opener=disk.open)
     now_ns = START_NS
     names = []
     for _ in range(2):
@@ -299,7 +298,7 @@ def test_a_disk_that_fails_again_leads_to_a_third_part(tmp_path: Path) -> None:
 
 def test_a_new_part_begins_with_what_was_said_once(tmp_path: Path) -> None:
     disk = Disk(free=1_000_000)
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder = opened(tmp_path, opener=disk.open)
     for item in a_flight():
         recorder.write(item, START_NS)
     disk.free = 0
@@ -323,7 +322,7 @@ def test_a_new_part_begins_with_what_was_said_once(tmp_path: Path) -> None:
 
 def test_a_disk_that_is_full_when_the_file_is_closed_is_reported(tmp_path: Path) -> None:
     disk = Disk(free=1_000_000)
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder = opened(tmp_path, opener=disk.open)
     recorder.write(position_frame(0), START_NS)
     disk.free = 0
     assert recorder.close(START_NS) is False
@@ -333,7 +332,7 @@ def test_a_part_that_cannot_be_removed_does_not_stand_in_the_next_ones_way(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     disk = Disk(free=0)
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder = opened(tmp_path, opener=disk.open)
     recorder.write(position_frame(0), START_NS)
     recorder.tick(START_NS + SECOND)
     with monkeypatch.context() as locked:
@@ -353,7 +352,7 @@ def test_a_part_that_could_not_be_removed_is_removed_once_it_can_be(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     disk = Disk(free=0)
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder = opened(tmp_path, opener=disk.open)
     recorder.write(position_frame(0), START_NS)
     recorder.tick(START_NS + SECOND)
     with monkeypatch.context() as locked:
@@ -370,7 +369,7 @@ def test_a_part_that_could_not_be_removed_is_removed_once_it_can_be(
 
 def test_a_part_whose_name_is_taken_by_another_file_takes_the_next(tmp_path: Path) -> None:
     disk = Disk(free=0)
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder = opened(tmp_path, opener=disk.open)
     foreign = tmp_path / "20260101-000000_f_part2.mcap"
     foreign.write_bytes(b"somebody else's")
     recorder.write(position_frame(0), START_NS)
@@ -388,7 +387,7 @@ def _in_use(path: Path, missing_ok: bool = False) -> None:
 
 def test_closing_while_nothing_is_recorded_is_harmless(tmp_path: Path) -> None:
     disk = Disk(free=0)
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, opener=disk.open)
+    recorder = opened(tmp_path, opener=disk.open)
     recorder.write(LogEvent(START_NS, 2, "gate", "hello"), START_NS)
     recorder.tick(START_NS + SECOND)
     disk.free = 20  # room for a beginning, not for a part
@@ -430,7 +429,7 @@ def checksum_of(messages: list[Logged]) -> int:
 
 
 def test_a_session_s_record_is_sealed_at_every_flush_and_at_its_end(tmp_path: Path) -> None:
-    recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS, sealed=True)
+    recorder = opened(tmp_path, "test", sealed=True)
     for number in range(3):
         recorder.write(position_frame(number), START_NS + number)
     recorder.tick(recorder.deadline_ns)
@@ -450,9 +449,7 @@ def test_a_session_s_record_is_sealed_at_every_flush_and_at_its_end(tmp_path: Pa
 
 def test_a_later_part_says_what_it_repeats_and_what_was_before_it(tmp_path: Path) -> None:
     disk = Disk(1 << 30)
-    recorder = Recorder.open(
-        tmp_path, "test", "20260101-000000", START_NS, opener=disk.open, sealed=True
-    )
+    recorder = opened(tmp_path, "test", opener=disk.open, sealed=True)
     recorder.write(ParamItem(1, "A", 1.0), START_NS)
     recorder.write(ParamItem(1, "B", 2.0), START_NS)
     disk.free = 0
@@ -493,9 +490,7 @@ def test_what_was_attached_word_for_word_is_not_attached_again(tmp_path: Path) -
 def test_a_file_that_has_its_size_is_closed_and_the_next_begins_without_a_gap(
     tmp_path: Path,
 ) -> None:
-    recorder = Recorder.open(
-        tmp_path, "f", "20260101-000000", START_NS, rotation=Rotation(size_bytes=20_000)
-    )
+    recorder = opened(tmp_path, rotation=Rotation(size_bytes=20_000))
     rng = random.Random(1)
     items = [
         FrameItem(0, Direction.RECEIVED, frame_v2(110, rng.randbytes(253) + b"\1", n & 0xFF))
@@ -521,9 +516,7 @@ def test_a_file_that_has_its_size_is_closed_and_the_next_begins_without_a_gap(
 def test_a_file_that_has_its_age_is_followed_by_one_with_all_that_was_said_once(
     tmp_path: Path,
 ) -> None:
-    recorder = Recorder.open(
-        tmp_path, "f", "20260101-000000", START_NS, rotation=Rotation(age_ns=10 * SECOND)
-    )
+    recorder = opened(tmp_path, rotation=Rotation(age_ns=10 * SECOND))
     for item in a_flight():
         recorder.write(item, START_NS)
     for number in range(25):
@@ -539,14 +532,7 @@ def test_a_file_that_has_its_age_is_followed_by_one_with_all_that_was_said_once(
 
 def test_a_disk_that_is_full_at_the_rotation_is_told_as_a_loss(tmp_path: Path) -> None:
     disk = Disk(free=1_000_000)
-    recorder = Recorder.open(
-        tmp_path,
-        "f",
-        "20260101-000000",
-        START_NS,
-        opener=disk.open,
-        rotation=Rotation(age_ns=SECOND),
-    )
+    recorder = opened(tmp_path, opener=disk.open, rotation=Rotation(age_ns=SECOND))
     recorder.write(position_frame(0), START_NS)
     recorder.tick(START_NS + 800 * MS)
     disk.free = 50
@@ -580,7 +566,7 @@ def test_an_input_is_the_first_of_what_is_recorded_of_it(
 
 def test_a_record_begins_with_its_first_input_however_late_that_comes(tmp_path: Path) -> None:
     """A flush that was due before it had put a seal in front of the set-up: no audit then."""
-    recorder = Recorder.open(tmp_path, "f", "20260101-000000", START_NS, sealed=True)
+    recorder = opened(tmp_path, sealed=True)
     recorder.tick(START_NS + SECOND)
     recorder.write(InputItem.of("Setup", {}), START_NS + 2 * SECOND)
     recorder.tick(START_NS + 3 * SECOND)

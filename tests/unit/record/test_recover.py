@@ -25,10 +25,9 @@ from gcs.mcap_file.reader import Reading
 from gcs.record import ros1
 from gcs.record.check import check
 from gcs.record.recover import recover
-from gcs.record.writer import Recorder
 from gcs.report import Direction, FrameItem
 from tests.shares import examples, one_in
-from tests.unit.record.flights import MS, START_NS, a_flight, frame_v2, messages_of, record
+from tests.unit.record.flights import MS, START_NS, a_flight, frame_v2, messages_of, opened, record
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ def killed() -> Killed:
     rng = random.Random(1)
     frames, flushed = [], []
     with TemporaryDirectory() as folder:
-        recorder = Recorder.open(Path(folder), "killed", "20260101-000000", START_NS)
+        recorder = opened(Path(folder), "killed")
         for number in range(2000):
             now_ns = START_NS + number * 2 * MS
             if now_ns >= recorder.deadline_ns:
@@ -186,29 +185,6 @@ def test_a_damaged_chunk_is_left_out_and_the_rest_is_saved(tmp_path: Path) -> No
     found = recovered_frames(tmp_path / "whole.mcap")
     assert set(found) < set(killed().frames)
     assert found[-1] == killed().frames[killed().flushed[-1][1] - 1]
-
-
-@pytest.mark.parametrize(
-    ("data", "reason"),
-    [(b"", "empty"), (b"hello, this is text", "not an MCAP"), (b"\x89MCAP", "not an MCAP")],
-)
-def test_what_is_no_mcap_is_refused_and_nothing_is_made(
-    tmp_path: Path, data: bytes, reason: str
-) -> None:
-    source = tmp_path / "bad.mcap"
-    source.write_bytes(data)
-    with pytest.raises(BadRecordError, match=reason):
-        recover(source, tmp_path / "out.mcap")
-    assert not (tmp_path / "out.mcap").exists()
-
-
-def test_recovering_does_not_overwrite(tmp_path: Path) -> None:
-    source, target = tmp_path / "a.mcap", tmp_path / "b.mcap"
-    source.write_bytes(killed().data)
-    target.write_text("precious")
-    with pytest.raises(FileExistsError):
-        recover(source, target)
-    assert target.read_text() == "precious"
 
 
 @settings(max_examples=examples(60), deadline=None)
