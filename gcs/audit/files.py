@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -19,11 +20,11 @@ from gcs.audit.messages import (
     payload_length,
 )
 from gcs.mcap_file.format import Attachment, Channel, Message, Metadata
-from gcs.mcap_file.reader import Condition, Reading
+from gcs.mcap_file.reader import Reading
 from gcs.record.parts import PartBegan
 from gcs.vehicle.record_items import Start
 
-Progress = Callable[[Path, Condition], None]
+Progress = Callable[[Path, int], None]
 
 
 @dataclass(slots=True)
@@ -52,9 +53,9 @@ class SessionFiles:
     def messages(self, progress: Progress | None = None) -> Iterator[Stored]:
         """Every message, file by file, in file order.  Raises BadRecordError and OSError."""
         for path in self.paths:
-            reading = Reading(path)
+            reading = Reading(path, progress and partial(progress, path))
             numbers = Numbers()
-            yield from _messages(reading, progress, numbers)
+            yield from _messages(reading, numbers)
             self.damaged += reading.condition.damaged
             self.misnumbered += numbers.wrong
             self.behind_bytes += reading.condition.behind_bytes
@@ -94,7 +95,7 @@ def sessions(paths: Iterable[Path]) -> list[SessionFiles]:
 
 def _place(path: Path) -> tuple[str, int]:
     """Which session a file is of, and which part of it: its first input tells."""
-    for message in _messages(Reading(path), None):
+    for message in _messages(Reading(path)):
         if message.topic != INPUT_TOPIC:
             continue
         try:
@@ -110,11 +111,9 @@ def _place(path: Path) -> tuple[str, int]:
     return str(path), 1
 
 
-def _messages(
-    reading: Reading, progress: Progress | None, numbers: Numbers | None = None
-) -> Iterator[Stored]:
+def _messages(reading: Reading, numbers: Numbers | None = None) -> Iterator[Stored]:
     channels: dict[int, tuple[str, int | None]] = {}
-    for number, record in enumerate(reading):
+    for record in reading:
         if isinstance(record, Message):
             channel = channels.get(record.channel_id)
             if numbers is not None:
@@ -124,5 +123,3 @@ def _messages(
                 yield Stored(topic, record.log_time_ns, record.data, length)
         elif isinstance(record, Channel):
             channels[record.id] = record.topic, payload_length(record.metadata)
-        if progress is not None and number % 1024 == 0:
-            progress(reading.path, reading.condition)

@@ -56,7 +56,7 @@ def reading_progress(file: Path, label: str) -> Iterator[Progress | None]:
         yield None
         return
     with click.progressbar(length=size, label=label, file=sys.stderr) as bar:
-        yield lambda condition: bar.update(condition.position - bar.pos)
+        yield lambda read_bytes: bar.update(read_bytes - bar.pos)
 
 
 @contextmanager

@@ -37,7 +37,7 @@ MAX_LENGTH = 1 << 30
 """A record of a growing file that says it is longer is none, and would be waited for in vain."""
 _KEPT_BYTES = 16 * 1024 * 1024
 """So much of a mapped file, once read, stays in memory."""
-_TOLD_BYTES = 1 << 20
+_TOLD_BYTES = 128 * 1024
 """So often the progress is told."""
 _NO_MCAP = "not an MCAP file (wrong first bytes)"
 
@@ -61,7 +61,8 @@ class Condition:
     """What stands behind the closing magic: nothing of this record."""
 
 
-Progress: TypeAlias = Callable[[Condition], None]
+Progress: TypeAlias = Callable[[int], None]
+"""Is told how many bytes have been read so far."""
 
 
 class Reading:
@@ -130,7 +131,7 @@ class Reading:
                 kept_from = _release(data, kept_from, end)
             if self._progress is not None and end - told >= _TOLD_BYTES:
                 told = end
-                self._progress(condition)
+                self._progress(end)
         condition.unread_bytes = max(0, condition.size - start)
         condition.position = condition.size
 

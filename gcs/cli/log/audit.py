@@ -22,7 +22,6 @@ from gcs.operator.errors import ExitError
 if TYPE_CHECKING:
     from gcs.audit.audit import AuditResult, Difference
     from gcs.audit.files import SessionFiles
-    from gcs.mcap_file.reader import Condition
     from gcs.wire.signing import SecretKey
 
 _PROGRESS_FROM_BYTES = 500_000
@@ -144,7 +143,7 @@ def _print_difference(difference: Difference) -> None:
 
 
 @contextmanager
-def _progress(session: SessionFiles) -> Iterator[Callable[[Path, Condition], None] | None]:
+def _progress(session: SessionFiles) -> Iterator[Callable[[Path, int], None] | None]:
     """A bar on a terminal, over all files of the session."""
     sizes = [path.stat().st_size for path in session.paths]
     if sum(sizes) < _PROGRESS_FROM_BYTES or not sys.stderr.isatty():
@@ -152,7 +151,7 @@ def _progress(session: SessionFiles) -> Iterator[Callable[[Path, Condition], Non
         return
     before = {path: sum(sizes[:number]) for number, path in enumerate(session.paths)}
     with click.progressbar(length=sum(sizes), label="auditing", file=sys.stderr) as bar:
-        yield lambda path, condition: bar.update(before[path] + condition.position - bar.pos)
+        yield lambda path, read_bytes: bar.update(before[path] + read_bytes - bar.pos)
 
 
 @click.command(epilog="Example: gcs log sign logs/20260101-120000_flight.mcap --key records.key")

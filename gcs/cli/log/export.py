@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import click
 
-from gcs.cli.log.files import SOURCE, TARGET, Target, new_file, progress, told
+from gcs.cli.log.files import SOURCE, TARGET, Target, new_file, told
+from gcs.cli.record_files import reading_progress
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -41,7 +42,7 @@ def export_log(file: Path, output: Path, message: str | None) -> None:
         raise click.UsageError(f"{output}: the suffix must be one of {', '.join(_FORMATS)}")
     if message is not None and suffix not in _BY_KIND:
         raise click.UsageError(f"--message is for {' and '.join(_BY_KIND)}")
-    with told(file), progress(file, "exporting") as bar:
+    with told(file), reading_progress(file, "exporting") as bar:
         write(file, output, message, bar)
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
 import click
 
-from gcs.cli.record_files import PROGRESS_FROM_BYTES
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -65,14 +63,3 @@ class Target:
 
 def cannot_write(path: Path, error: OSError) -> ExitError:
     return ExitError(ExitCode.RECORDER, f"{path}: cannot write: {error.strerror or error}")
-
-
-@contextmanager
-def progress(source: Path, label: str) -> Iterator[Callable[[int], None] | None]:
-    """A bar on a terminal, for files that take over a second; it is told the bytes read so far."""
-    size = source.stat().st_size
-    if size < PROGRESS_FROM_BYTES or not sys.stderr.isatty():
-        yield None
-        return
-    with click.progressbar(length=size, label=label, file=sys.stderr) as bar:
-        yield lambda read_bytes: bar.update(read_bytes - bar.pos)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.log.files import SOURCE, TARGET, new_file, progress, told
+from gcs.cli.log.files import SOURCE, TARGET, new_file, told
+from gcs.cli.record_files import reading_progress
 
 if TYPE_CHECKING:
     from gcs.logfile.imports.result import Imported
@@ -33,7 +34,7 @@ def import_log(file: Path, output: Path, as_json: bool) -> None:
 
     with told(file):
         run = importer_of(file)
-        with new_file(output) as target, progress(file, "importing") as bar:
+        with new_file(output) as target, reading_progress(file, "importing") as bar:
             writer = BatchWriter(target)
             found = run(file, writer, bar)
             writer.finish()
