@@ -224,6 +224,10 @@ class Flight:
             case ["awaits", _]:
                 kinds = [kind.name for _, kind in gate.memory.outstanding]
                 return f"awaits {' '.join(kinds) or 'none'}"
+            case ["due", _]:  # seconds until the next thing is; asking changes nothing
+                known, due_ns = gate.memory, gate.deadline_ns
+                assert gate.memory == known
+                return f"due {'none' if due_ns is None else (due_ns - script.now_ns) / SECOND}"
             case ["asks", _]:
                 return f"asks {gate.memory.asked_mode or 'none'}"
             case ["states", _]:

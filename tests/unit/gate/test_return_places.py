@@ -5,83 +5,57 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.airspace.return_place import ReturnPlace
-from gcs.gate.condition import Condition, Severity
-from gcs.gate.effects import CommandKind, Ruling
-from gcs.gate.inputs import ConditionChanged, ReturnPlacesSeen
-from gcs.gate.refusal import Code
-from gcs.gate.requests import ReturnHome
-from gcs.gate.states import State
+from gcs.gate.inputs import ReturnPlacesSeen
 from tests.unit.gate.airspace import at
-from tests.unit.gate.script import policy
-from tests.unit.gate.situations import AIRBORNE, flight, state_of
+from tests.unit.gate.flight_words import Flight
+from tests.unit.gate.rows import Row, rows
 
-NEAR = ReturnPlace("rally point 1", at(2, 0, 0))
-OUTSIDE = ReturnPlace("rally point 2", at(0, 500, 0))
-TOO_HIGH = ReturnPlace("rally point 3", at(2, 0, 0), over_up_m=200.0)
-BLOCKED = [state for state in AIRBORNE if state is not State.LANDING]
-
-
-@pytest.mark.parametrize("state", AIRBORNE)
-def test_clear_ways_to_home_and_to_each_place_clear_it(state: State) -> None:
-    script, _ = flight(state)
-    script.feed(ReturnPlacesSeen((NEAR,)))
-    asked = script.ask(ReturnHome())
-    assert script.verdict(asked).ruling is Ruling.ACCEPTED
-    assert state_of(script) is State.RETURNING
+PLACES = {
+    "near": ReturnPlace("rally point 1", at(2, 0, 0)),
+    "outside": ReturnPlace("rally point 2", at(0, 500, 0)),
+    "too-high": ReturnPlace("rally point 3", at(2, 0, 0), over_up_m=200.0),
+    "on-a-hill": ReturnPlace("rally point 1", at(2, 0, 47.0)),
+    "on-a-higher-hill": ReturnPlace("rally point 1", at(2, 0, 49.0)),
+}
 
 
-@pytest.mark.parametrize("state", BLOCKED)
-@pytest.mark.parametrize("bad", [OUTSIDE, TOO_HIGH])
-def test_one_blocked_way_refuses_it_and_is_named(state: State, bad: ReturnPlace) -> None:
-    script, _ = flight(state)
-    script.feed(ReturnPlacesSeen((NEAR, bad)))
-    asked = script.ask(ReturnHome())
-    refusal = script.verdict(asked).refusal
-    assert refusal is not None
-    assert refusal.code is Code.RTL_BLOCKED
-    assert bad.name in refusal.sentence or "climb to return height" in refusal.sentence
-    assert refusal.sentence.endswith("land instead")
-    assert state_of(script) is State.HOLDING
+def may_end(flight: Flight, *names: str) -> None:
+    flight.script.feed(ReturnPlacesSeen(tuple(PLACES[name] for name in names)))
 
 
-@pytest.mark.parametrize("state", BLOCKED)
-def test_while_they_are_not_known_it_is_refused_with_the_reason(state: State) -> None:
-    script, _ = flight(state)
-    script.feed(ReturnPlacesSeen(None, "they are being read"))
-    asked = script.ask(ReturnHome())
-    refusal = script.verdict(asked).refusal
-    assert refusal is not None
-    assert refusal.code is Code.RTL_BLOCKED
-    assert refusal.sentence == "they are being read: land instead"
-    script.feed(ReturnPlacesSeen(()))
-    assert script.verdict(script.ask(ReturnHome())).ruling is Ruling.ACCEPTED
+def not_known(flight: Flight, *why: str) -> None:
+    flight.script.feed(ReturnPlacesSeen(None, " ".join(why)))
 
 
-def test_a_higher_way_to_a_place_counts_from_its_ground() -> None:
-    """The yard's ceiling is 50 m up: 1.5 m above ground that lies 49 m up is too high."""
-    script, _ = flight(State.HOVERING)
-    script.feed(ReturnPlacesSeen((ReturnPlace("rally point 1", at(2, 0, 47.0)),)))
-    assert script.verdict(script.ask(ReturnHome())).ruling is Ruling.ACCEPTED
-    script, _ = flight(State.HOVERING)
-    script.feed(ReturnPlacesSeen((ReturnPlace("rally point 1", at(2, 0, 49.0)),)))
-    assert script.refusal(script.ask(ReturnHome())) is Code.RTL_BLOCKED
+ROWS = rows(
+    """
+# Clear ways to home and to each place clear it.
+{AIRBORNE}; may-end near | return | RETURNING OURS, sends RETURN, it superseded, return accepted
+# One blocked way refuses it and is named; while they are not known it is refused with the reason.
+{AIRBORNE -LANDING}; may-end near outside
+    | return | HOLDING OURS, sends HOLD, it aborted OPERATOR, return refused RTL_BLOCKED;
+    ... says "rally point 2"; says "land instead"
+{AIRBORNE -LANDING}; may-end near too-high
+    | return | HOLDING OURS, sends HOLD, it aborted OPERATOR, return refused RTL_BLOCKED;
+    ... says "climb to return height"; says "land instead"
+{AIRBORNE -LANDING}; not-known they are being read
+    | return | HOLDING OURS, sends HOLD, it aborted OPERATOR, return refused RTL_BLOCKED;
+    ... says "they are being read: land instead"
+    | may-end; return | RETURNING OURS, sends RETURN, return accepted
+# A higher way to a place counts from its ground: the yard's ceiling is 50 m up.
+HOVERING; may-end on-a-hill | return | RETURNING OURS, sends RETURN, it superseded, return accepted
+HOVERING; may-end on-a-higher-hill
+    | return | HOLDING OURS, sends HOLD, it aborted OPERATOR, return refused RTL_BLOCKED
+# The gate's own return is judged by the same ways.
+BATTERY_LOW=RETURN, rtl_blocked=<hold, land, forward>: MOVING; {may-end outside, not-known}
+    | raised BATTERY_LOW
+    | <HOLDING, LANDING, RETURNING> OURS, sends <HOLD, LAND, RETURN>, it aborted SEVERITY
+""",
+    may_end,
+    not_known,
+)  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("choice", "does", "after"),
-    [
-        ("hold", CommandKind.HOLD, State.HOLDING),
-        ("land", CommandKind.LAND, State.LANDING),
-        ("forward", CommandKind.RETURN, State.RETURNING),
-    ],
-)
-@pytest.mark.parametrize("seen", [ReturnPlacesSeen((OUTSIDE,)), ReturnPlacesSeen(None, "")])
-def test_the_gate_s_own_return_is_judged_by_the_same_ways(
-    choice: str, does: CommandKind, after: State, seen: ReturnPlacesSeen
-) -> None:
-    severities = {**policy("default").severities, Condition.BATTERY_LOW: Severity.RETURN}
-    script, _ = flight(State.MOVING, severities=severities, rtl_blocked=choice)
-    script.feed(seen)
-    script.feed(ConditionChanged(Condition.BATTERY_LOW, True, "low"))
-    assert script.commands() == [does]
-    assert state_of(script) is after
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_where_a_return_may_end(row: Row) -> None:
+    row.fly()
