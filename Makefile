@@ -65,7 +65,7 @@ mutants: $(TEST) ## alter the gate in one place at a time: does a test notice? A
 	$(BIN)/python -m tests.mutants $(ARGS)
 
 bench: $(TEST) $(CLIENTS)/mavio/.installed ## paired speed ratios against peers, in one run
-	$(BIN)/python -m tests.bench
+	$(BIN)/python -m tools
 
 messages: $(RUN) ## regenerate the message classes of gcs and vehicle_sim from the dialect
 	$(BIN)/python -m gcs.wire.generate

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import random
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import all as dialect
 
+from tests.system.patience import until
 from tests.system.programs import LONGEST_S
 from tests.system.wire_tap import Crossing, WireTap
 
@@ -70,6 +74,22 @@ class HoldWatch:
             asked = (message.command, message.param2, message.param3)
             if asked == (dialect.MAV_CMD_DO_SET_MODE, PX4_AUTO, PX4_LOITER):
                 self.passed_ns.append(crossing.at_ns)
+
+
+class Stopwatch(HoldWatch):
+    """How long it takes from an abort to the hold command."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._moments = random.Random(1)
+
+    def latency_ms(self, abort: Callable[[], object]) -> float:
+        time.sleep(self._moments.uniform(0.0, 0.2))
+        known = len(self.passed_ns)
+        start_ns = time.monotonic_ns()
+        abort()
+        until(lambda: len(self.passed_ns) > known, "the hold command")
+        return (self.passed_ns[known] - start_ns) / 1e6
 
 
 def loiter_seen_ns(tap: WireTap, custom_mode: int, after_ns: int = 0) -> int:

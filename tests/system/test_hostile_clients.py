@@ -1,7 +1,4 @@
-"""A crowd of hostile clients of the station's socket costs the flight nothing.
-
-A share of `python -m tests.bench.measure_hostile_clients`, which has a thousand of them.
-"""
+"""A crowd of hostile clients of the station's socket costs the flight nothing."""
 
 from __future__ import annotations
 
@@ -31,8 +28,7 @@ pytestmark = [
 CLIENTS = 80
 TICK_MS = 50.0
 LATE_MS = 55.0
-"""Nine of ten setpoints come within this: the tenth is left to a machine that others use too, and
-the 99th of 100 is measured by the script on one that nobody else uses."""
+"""Nine of ten setpoints come within this: the tenth is left to a machine that others use too."""
 GAP_MS = 500.0
 """A link that waits for a client stands for seconds.  To both limits is added what the machine
 kept the station waiting, as far as it is known (`KeptWaiting`)."""

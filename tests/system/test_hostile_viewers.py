@@ -1,7 +1,4 @@
-"""Slow and hostile viewers of a live view cost the flight nothing.
-
-A share of `python -m tests.bench.measure_live_view`, which has a thousand of them.
-"""
+"""Slow and hostile viewers of a live view cost the flight nothing."""
 
 from __future__ import annotations
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.bench.measure_abort import Stopwatch
 from tests.system.flight_log import only_log, readings, whole
 from tests.system.machine import KeptWaiting
 from tests.system.patience import PATIENT_POLICY
 from tests.system.programs import GCS, children, running
+from tests.system.second_program import Stopwatch
 from tests.system.vehicle_program import free_port, vehicle_sim
 from tests.system.wire_tap import WireTap
 

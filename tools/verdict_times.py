@@ -1,6 +1,6 @@
 """How long the gate takes for a verdict, in process: a goal, a stream sample, a 100-item mission.
 
-    python -m tests.bench.verdict_times [--goals 2000] [--missions 40] [--no-freeze]
+    python -m tools.verdict_times [--goals 2000] [--missions 40] [--no-freeze]
 
 A client's frame is handed to the whole session of a bridge in flight (simulated PX4, virtual time),
 and a clock outside measures the one call that gives the verdict: split, judged, verified, answered.

@@ -1,6 +1,6 @@
 """`make bench`: every paired ratio, then every measurement in real time, one after the other.
 
-Each is a program of its own too: `python -m tests.bench.bench_wire`.
+Each is a program of its own too: `python -m tools.bench_wire`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ PROGRAMS = (
     "measure_starts",
     "measure_armable",
     "measure_speedup",
-    "measure_highest",
     "measure_fleet",
     "measure_abort",
     "measure_stream",
@@ -33,7 +32,7 @@ def main() -> int:
     for program in PROGRAMS:
         load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
         print(f"\n== {program}, load {load:.1f}", flush=True)
-        done = subprocess.run([sys.executable, "-m", f"tests.bench.{program}"], check=False)
+        done = subprocess.run([sys.executable, "-m", f"tools.{program}"], check=False)
         worst = max(worst, done.returncode)
     return worst
 

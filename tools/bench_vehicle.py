@@ -1,6 +1,6 @@
 """One vehicle's step against JSBSim's in the same run, and whole fleets by their size.
 
-    python -m tests.bench.bench_vehicle [--rounds 5] [--steps 2500]
+    python -m tools.bench_vehicle [--rounds 5] [--steps 2500]
 
 A step of ours is all that runs at 250 Hz: guidance, control, motors, wind, physics, ground,
 battery, sensors, estimator.  JSBSim's is `FGFDMExec.run()` of aircraft that its package ships: the

@@ -1,8 +1,8 @@
 """The two ends of `bench_bridge`: a vehicle that sends at a steady rate, a client that counts.
 
-    python -m tests.bench.bridge_ends send PORT RATE SECONDS [FRAMES]
-    python -m tests.bench.bridge_ends receive listen PORT
-    python -m tests.bench.bridge_ends receive connect PORT
+    python -m tools.bridge_ends send PORT RATE SECONDS [FRAMES]
+    python -m tools.bridge_ends receive listen PORT
+    python -m tools.bridge_ends receive connect PORT
 
 The vehicle prints one line of JSON at its end; the client one for each line that it reads, with
 what came since the last, until its input ends.  The vehicle sends what a flying PX4 sends of the

@@ -1,6 +1,6 @@
 """MCAP record of a frame: the recorder beside `mcap.Writer` on the same frames.
 
-Run: python tests/bench/bench_record.py
+Run: python -m tools.bench_record
 
 Five stretches of work over the same frames (a real mix of sizes), taken in turn so that a change
 of load hits all alike; figures are medians over the rounds, both sides with lz4 and 256 KiB chunks:

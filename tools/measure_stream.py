@@ -1,6 +1,6 @@
 """The setpoint stream of a whole flight at the keyboard, with the screen redrawn at 10 Hz.
 
-Run: python -m tests.bench.measure_stream
+Run: python -m tools.measure_stream
 
 Real keys in a pty; intervals once from the record's log times, once from an listener on the wire.
 """

@@ -1,6 +1,6 @@
 """What fleets cost over real sockets: CPU time, whether they keep up, and memory.
 
-Run: python -m tests.bench.measure_fleet [--seconds 10]
+Run: python -m tools.measure_fleet [--seconds 10]
 
 All vehicles hover while they are measured.  CPU time is the program's own (user and system), the
 pace is the vehicles' time stamps against the wall: below 1 where the machine has no core to spare.
@@ -14,7 +14,7 @@ import sys
 import time
 from dataclasses import dataclass
 
-from tests.bench.fleet_listener import Fleet, fleet
+from tools.fleet_listener import Fleet, fleet
 
 
 @dataclass(frozen=True)

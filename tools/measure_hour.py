@@ -1,6 +1,6 @@
 """An hour-long record: its size, and what a viewer waits for, as written and compacted.
 
-Run: python -m tests.bench.measure_hour [FILE]    (without FILE an hour is flown on a virtual clock)
+Run: python -m tools.measure_hour [FILE]    (without FILE an hour is flown on a virtual clock)
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """How long a user of MAVSDK waits: from the start of `vehicle-sim` to heard, and to armable.
 
-Run: python -m tests.bench.measure_armable [--rounds 5]
+Run: python -m tools.measure_armable [--rounds 5]
 MAVSDK is there first and waits, at speed 1; armable is all of its health flags.
 """
 

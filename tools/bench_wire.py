@@ -1,6 +1,6 @@
 """Decoding and encoding against pymavlink on the same messages, paired in one run.
 
-    python tests/bench/bench_wire.py [rounds]
+    python -m tools.bench_wire [rounds]
 
 Each round times both sides one after the other; the figure is the median of the rounds' ratios.
 """

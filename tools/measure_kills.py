@@ -1,6 +1,6 @@
 """kill -9 of a station that records 100 and 2,000 messages a second: what is lost, 20 times.
 
-Run: python -m tests.bench.measure_kills_by_rate [RERUN]
+Run: python -m tools.measure_kills [RERUN]
 RERUN is the path of rerun-sdk's program, whose `mcap check` then looks at each recovered file.
 """
 

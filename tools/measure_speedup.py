@@ -1,6 +1,6 @@
 """The factor that a vehicle's time reaches while MAVSDK is attached and flies a mission.
 
-Run: python -m tests.bench.measure_speedup [--factors 10,50] [--seconds 10]
+Run: python -m tools.measure_speedup [--factors 10,50] [--seconds 10]
 The factor is the vehicle's own time stamps against the wall, as MAVSDK receives them.
 """
 

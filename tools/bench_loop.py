@@ -1,6 +1,6 @@
 """Simulated seconds per CPU second of the whole loop: ground station, link, vehicle, one core.
 
-    python -m tests.bench.bench_loop [--seconds 60] [--runs 5]
+    python -m tools.bench_loop [--seconds 60] [--runs 5]
 
 A flight to the lab's goals over and over; each personality, on a clear link and in bad weather.
 Prints the best and the median of the runs, and the load of the machine, which it depends on.

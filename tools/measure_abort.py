@@ -1,6 +1,6 @@
 """From an abort to its bytes on the wire: a key in a terminal, and a line into the station itself.
 
-Run: python -m tests.bench.measure_abort
+Run: python -m tools.measure_abort
 
 50 times each: resume, wait a moment of random length, abort, and see when the hold command
 passes an independent listener on the wire.
@@ -9,17 +9,13 @@ passes an independent listener on the wire.
 from __future__ import annotations
 
 import os
-import random
 import tempfile
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 from gcs import ipc
 from gcs.operator.conversation import TrackedRequest
-from tests.system.patience import until
 from tests.system.programs import GCS
-from tests.system.second_program import HoldWatch
+from tests.system.second_program import Stopwatch
 from tests.system.station import tapped
 from tests.system.terminal import terminal
 from tests.system.typed_flight import take_off
@@ -27,20 +23,6 @@ from tests.system.vehicle_program import free_port, vehicle_sim
 from tests.system.wire_tap import WireTap
 
 ABORTS = 50
-
-_rng = random.Random(1)
-
-
-class Stopwatch(HoldWatch):
-    """How long it takes from an abort to the hold command."""
-
-    def latency_ms(self, abort: Callable[[], object]) -> float:
-        time.sleep(_rng.uniform(0.0, 0.2))
-        known = len(self.passed_ns)
-        start_ns = time.monotonic_ns()
-        abort()
-        until(lambda: len(self.passed_ns) > known, "the hold command")
-        return (self.passed_ns[known] - start_ns) / 1e6
 
 
 def by_key(folder: str) -> list[float]:

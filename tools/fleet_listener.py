@@ -151,7 +151,7 @@ def fleet(
     listener = Listener([_udp() for _ in range(count)] if own else [], _udp() if shared else None)
     ports = [each.getsockname()[1] for each in listener.own]
     common = [] if listener.shared is None else [listener.shared.getsockname()[1]]
-    words = [sys.executable, "-m", "tests.bench.fleet_listener", personality, str(count)]
+    words = [sys.executable, "-m", "tools.fleet_listener", personality, str(count)]
     words += ["--own", ",".join(map(str, ports)), "--shared", ",".join(map(str, common))]
     words += ["--sparse"] if sparse else []
     process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)

@@ -1,6 +1,6 @@
 """How long programs take from their start: help, the vehicle's first heartbeat, the demo.
 
-Run: python -m tests.bench.measure_starts [--demo]
+Run: python -m tools.measure_starts [--demo]
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Finished logs: columns and import, beside pymavlink, mcap's reader and mavio on the same files.
 
-Run: python -m tests.bench.bench_logfile [rounds]
+Run: python -m tools.bench_logfile [rounds]
 
 The log is made here: an hour of a vehicle that sends as much as PX4 does to a program on board,
 1,000,000 messages of 12 kinds in MAVLink 2.  Each figure is the median of the rounds' ratios; in a

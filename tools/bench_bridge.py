@@ -1,6 +1,6 @@
 """What it costs to have the gate between a vehicle and one client, beside MAVProxy as a forwarder.
 
-    python -m tests.bench.bench_bridge [--seconds 8] [--mavproxy PATH] [--highest]
+    python -m tools.bench_bridge [--seconds 8] [--mavproxy PATH] [--highest]
 
 One vehicle and one client, UDP on loopback, eight frames a datagram as vehicle-sim sends them.
 `gcs bridge` is the real program: gate, record and all; its CPU is of all its processes.  MAVProxy
@@ -31,7 +31,7 @@ DRAIN_S = 1.0
 """After a stream: what stands in a queue still comes."""
 SETTLE_S = 2.0
 TRIES = 5
-VERDICTS = (sys.executable, "-m", "tests.bench.verdict_times")
+VERDICTS = (sys.executable, "-m", "tools.verdict_times")
 LADDER = (60_000, 80_000, 100_000, 120_000, 150_000, 180_000, 220_000)
 
 
@@ -98,7 +98,7 @@ def started(command: list[str], folder: str) -> Iterator[subprocess.Popen[bytes]
 
 
 def end(*words: object) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "tests.bench.bridge_ends", *map(str, words)]
+    command = [sys.executable, "-m", "tools.bridge_ends", *map(str, words)]
     folder = Path(__file__).parents[2]
     return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=folder)
 
