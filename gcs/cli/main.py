@@ -11,7 +11,7 @@ import os
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn, cast
 
 import click
 
@@ -26,7 +26,7 @@ class Entry(NamedTuple):
 
     target: str  # "module:attribute"
     help: str
-    more: tuple[str, ...] = ()
+    more: str = ""  # "module:attribute" of them
 
 
 COMMANDS: dict[str, dict[str, Entry]] = {
@@ -62,13 +62,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "mission": Entry(
             "gcs.cli.mission.mission:mission",
             "Mission files: check, show, upload, download, fly, set-current, clear.",
-            more=(
-                "gcs.cli.mission.live:upload",
-                "gcs.cli.mission.live:download",
-                "gcs.cli.mission.live:fly",
-                "gcs.cli.mission.live:set_current",
-                "gcs.cli.mission.live:clear",
-            ),
+            more="gcs.cli.mission.live:COMMANDS",
         ),
         "key": Entry("gcs.cli.key:key", "Signing keys: new, show, install on a vehicle, remove."),
         "topic": Entry(
@@ -81,11 +75,9 @@ COMMANDS: dict[str, dict[str, Entry]] = {
 }
 
 
-def _load(target: str) -> click.Command:
+def _load(target: str) -> object:
     module, attribute = target.split(":")
-    command = getattr(importlib.import_module(module), attribute)
-    assert isinstance(command, click.Command)
-    return command
+    return getattr(importlib.import_module(module), attribute)
 
 
 class LazyGroup(click.Group):
@@ -122,10 +114,10 @@ class LazyGroup(click.Group):
 
 def _with_additions(entry: Entry) -> click.Command:
     command = _load(entry.target)
-    for target in entry.more:
+    assert isinstance(command, click.Command)
+    if entry.more:
         assert isinstance(command, click.Group)
-        added = _load(target)
-        if added.name not in command.commands:
+        for added in cast("tuple[click.Command, ...]", _load(entry.more)):
             command.add_command(added)
     return command
 

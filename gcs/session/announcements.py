@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable
 
 from gcs import ipc
+from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.frames import Vec3
 from gcs.gate import effects
 from gcs.gate.airspace.projection import Origin
@@ -18,6 +19,7 @@ from gcs.gate.effects import Level
 from gcs.gate.geometry import Circle
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
+from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo, Request
 from gcs.report import (
     ConditionItem,
@@ -48,21 +50,19 @@ def requested(asked: Asked, request: Request) -> Log:
     return Log(Level.INFO, NODE, f"Requested: {asked.word}")
 
 
-def verdict(told: GiveVerdict, asked: Asked, sysid: int) -> list[Effect]:
-    """Accepted, refused or superseded; with the numbers it was decided on."""
-    refusal = told.refusal
+def verdict(told: GiveVerdict, asked: Asked, name: str, sysid: int, now_ns: int) -> list[Effect]:
+    """Accepted, refused or superseded; with the numbers it was decided on.  `name` is the client's,
+    if it is one of MAVLink's: then whoever watches the bridge is told as well."""
     item = DecisionItem(
-        vehicle=sysid,
-        request_id=told.request_id,
-        source=asked.source,
-        word=asked.word,
-        phase="verdict",
-        outcome=told.ruling.value,
-        code=refusal.code.value if refusal else "",
-        sentence=refusal.sentence if refusal else "",
-        zone=refusal.zone if refusal else "",
+        sysid,
+        told.request_id,
+        asked.source,
+        asked.word,
+        "verdict",
+        told.ruling.value,
+        *_reason(told.refusal),
         goal=_point(told.goal_ned),
-        numbers=dict(refusal.numbers if refusal else told.evidence),
+        numbers=dict(told.refusal.numbers if told.refusal else told.evidence),
     )
     event = ipc.VerdictEvent(
         asked.ask.id,
@@ -75,103 +75,83 @@ def verdict(told: GiveVerdict, asked: Asked, sysid: int) -> list[Effect]:
         item.goal.enu if item.goal else None,
         told.request_id,
     )
-    return [Emit(event, asked.client), Record(item)]
+    return [Emit(event, asked.client), Record(item), *_for_bridge(item, asked.client, name, now_ns)]
 
 
-def bridge_decision(told: GiveVerdict, asked: Asked, name: str, sysid: int, now_ns: int) -> Emit:
-    """The verdict on what a MAVLink client asked for, for whoever watches the bridge."""
-    refusal = told.refusal
-    return Emit(
-        ipc.BridgeDecision(
-            time_ns=now_ns,
-            client=asked.client,
-            name=name,
-            what=asked.word,
-            outcome=told.ruling.value,
-            code=refusal.code.value if refusal else "",
-            sentence=refusal.sentence if refusal else "",
-            vehicle=sysid,
-        )
-    )
-
-
-def bridge_stream_decision(
+def stream_verdict(
     told: effects.StreamVerdict, client: int, name: str, sysid: int, now_ns: int
-) -> Emit:
-    """What becomes of a MAVLink client's stream from now on, for whoever watches the bridge."""
-    refusal = told.refusal
-    return Emit(
-        ipc.BridgeDecision(
-            time_ns=now_ns,
-            client=client,
-            name=name,
-            what="stream",
-            outcome="refused" if refusal else "accepted",
-            code=refusal.code.value if refusal else "",
-            sentence=refusal.sentence if refusal else "",
-            vehicle=sysid,
-        )
-    )
-
-
-def stream_verdict(told: effects.StreamVerdict, client: int, sysid: int) -> list[Effect]:
+) -> list[Effect]:
     """Samples of a stream are refused from now on, or flown."""
-    refusal = told.refusal
-    item = DecisionItem(
-        vehicle=sysid,
-        request_id=0,
-        source=told.source,
-        word="stream",
-        phase="stream",
-        outcome="refused" if refusal else "accepted",
-        code=refusal.code.value if refusal else "",
-        sentence=refusal.sentence if refusal else "",
-        zone=refusal.zone if refusal else "",
-        goal=None,
-        numbers=dict(told.evidence),
-    )
+    outcome = "refused" if told.refusal else "accepted"
+    item = _of_stream(told.source, sysid, outcome, *_reason(told.refusal), dict(told.evidence))
     event = ipc.StreamVerdictEvent(
         item.outcome, item.code, item.sentence, item.zone, item.numbers, sysid
     )
-    return [Emit(event, client), Record(item)]
+    return [Emit(event, client), Record(item), *_for_bridge(item, client, name, now_ns)]
 
 
 def stream_ended(source: str, sysid: int, code: str, sentence: str, samples: float) -> Record:
     """Samples of a stream were refused until it ended; `code` is the last reason."""
-    return Record(
-        DecisionItem(
-            vehicle=sysid,
-            request_id=0,
-            source=source,
-            word="stream",
-            phase="stream",
-            outcome="ended",
-            code=code,
-            sentence=sentence,
-            zone="",
-            goal=None,
-            numbers={"refused_samples": samples},
-        )
-    )
+    numbers: dict[str, float | None] = {"refused_samples": samples}
+    return Record(_of_stream(source, sysid, "ended", code, sentence, "", numbers))
 
 
 def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
     """How an accepted request ended."""
     item = DecisionItem(
-        vehicle=sysid,
-        request_id=told.request_id,
-        source=asked.source,
-        word=asked.word,
-        phase="ending",
-        outcome=told.kind.value,
-        code=told.code.value if told.code else "",
-        sentence=told.sentence,
+        sysid,
+        told.request_id,
+        asked.source,
+        asked.word,
+        "ending",
+        told.kind.value,
+        told.code.value if told.code else "",
+        told.sentence,
         zone="",
         goal=None,
         numbers={},
     )
     event = ipc.EndingEvent(asked.ask.id, item.word, item.outcome, item.code, item.sentence)
     return [Emit(event, asked.client), Record(item)]
+
+
+def _of_stream(
+    source: str,
+    sysid: int,
+    outcome: str,
+    code: str,
+    sentence: str,
+    zone: str,
+    numbers: dict[str, float | None],
+) -> DecisionItem:
+    return DecisionItem(
+        sysid, 0, source, "stream", "stream", outcome, code, sentence, zone, None, numbers
+    )
+
+
+def _reason(refusal: Refusal | None) -> tuple[str, str, str]:
+    """Code, sentence and zone; empty where nothing is refused."""
+    return (refusal.code.value, refusal.sentence, refusal.zone) if refusal else ("", "", "")
+
+
+def _for_bridge(item: DecisionItem, client: int, name: str, now_ns: int) -> list[Emit]:
+    """What becomes of what a MAVLink client has asked for, or streams."""
+    if client < FIRST_NUMBER:
+        return []
+    return [
+        Emit(
+            ipc.BridgeDecision(
+                now_ns,
+                client,
+                name,
+                item.word,
+                item.outcome,
+                item.code,
+                item.sentence,
+                item.vehicle,
+            )
+        )
+    ]
 
 
 def transition(

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Container
 
 from gcs import ipc
-from gcs.bridge.bridge import FIRST_NUMBER
 from gcs.bridge.effects import AsksPlan, StopsPlan
 from gcs.enu_text import plain_enu
 from gcs.gate import inputs as gate_inputs
@@ -200,7 +199,7 @@ class Operators:
         if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
             # The mission mode by its name is a mission start, and is verified like one.
             return [*given, AskMission(request_id, ask)]
-        return [*given, AskGate(request_id, request)]
+        return [*given, *self.asked_of_gate(AskGate(request_id, request))]
 
     def _stream(
         self, client: int, sample: ipc.Stream, no_vehicle: Refusal | None, now_ns: int
@@ -311,9 +310,7 @@ class Operators:
         request_id, requests = told.request_id, self._requests
         asked = requests.get(request_id)
         name = self._clients.name(asked.client)
-        work: list[Work] = [*announcements.verdict(told, asked, sysid)]
-        if asked.client >= FIRST_NUMBER:
-            work.append(announcements.bridge_decision(told, asked, name, sysid, now_ns))
+        work: list[Work] = [*announcements.verdict(told, asked, name, sysid, now_ns)]
         if told.ruling is not Ruling.ACCEPTED:
             requests.close(request_id)
             return work
@@ -338,11 +335,8 @@ class Operators:
     def _tell_stream(self, told: StreamVerdict, sysid: int, now_ns: int) -> list[Work]:
         """To the operator, and where it is a MAVLink client to whoever watches the bridge."""
         client = client_of(told.source)
-        work: list[Work] = [*announcements.stream_verdict(told, client, sysid)]
-        if client >= FIRST_NUMBER:
-            name = self._clients.name(client)
-            work.append(announcements.bridge_stream_decision(told, client, name, sysid, now_ns))
-        return work
+        name = self._clients.name(client)
+        return [*announcements.stream_verdict(told, client, name, sysid, now_ns)]
 
     def second(self, now_ns: int) -> list[Work]:
         """Once a second: what has ended because nothing more came."""

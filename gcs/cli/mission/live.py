@@ -126,6 +126,9 @@ def clear(
     _run("mission clear", **to)
 
 
+COMMANDS = (upload, download, fly, set_current, clear)
+
+
 def _check_output(output: str, force: bool) -> None:
     """Whether a mission may be written there, checked before any station is started."""
     from pathlib import Path

@@ -44,7 +44,7 @@ def test_a_refusal_is_told_with_its_numbers_in_the_operators_frame() -> None:
     refusal = Refusal(Code.OUTSIDE_FENCE, "350 m outside", (("distance_m", 350.0),), "home")
     goal_ned = (0.0, 500.0, -2.0)
     decide = GiveVerdict(7, Ruling.REFUSED, refusal, goal_ned=goal_ned)
-    assert told(announcements.verdict(decide, ASKED, 1)) == (
+    assert told(announcements.verdict(decide, ASKED, "", 1, NOW_NS)) == (
         [
             '{"type":"verdict","id":3,"word":"goto","outcome":"refused","code":"OUTSIDE_FENCE",'
             '"sentence":"350 m outside","zone":"home","numbers":{"distance_m":350.0},'
@@ -62,14 +62,14 @@ def test_a_goal_that_is_no_number_is_null() -> None:
     goal_ned = (math.nan, 1.0, -math.inf)
     refusal = Refusal(Code.NON_FINITE, "north is no number")
     decide = GiveVerdict(7, Ruling.REFUSED, refusal, goal_ned=goal_ned)
-    (line,), (message,) = told(announcements.verdict(decide, ASKED, 1))
+    (line,), (message,) = told(announcements.verdict(decide, ASKED, "", 1, NOW_NS))
     assert '"goal_enu":[1.0,null,null]' in line
     assert '"goal":{"east_m":1.0,"north_m":null,"up_m":null}' in message
 
 
 def test_an_acceptance_has_its_evidence_and_a_request_without_a_goal_none() -> None:
     decide = GiveVerdict(7, Ruling.ACCEPTED, evidence=(("stop_m", 1.5),))
-    (line,), (message,) = told(announcements.verdict(decide, ASKED, 1))
+    (line,), (message,) = told(announcements.verdict(decide, ASKED, "", 1, NOW_NS))
     assert '"numbers":{"stop_m":1.5},"goal_enu":null,"operation":7}' in line
     assert '"outcome":"accepted","numbers":{"stop_m":1.5}}' in message
     assert "goal" not in message
