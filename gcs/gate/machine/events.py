@@ -6,8 +6,10 @@ request for a mode by its name is the event of the request that means the same.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
-from typing import Final, assert_never
+from types import MappingProxyType
+from typing import Final
 
 from gcs.gate.requests import (
     Abort,
@@ -102,27 +104,29 @@ class Event(StrEnum):
     OPERATOR_LOST = "operator lost"
 
 
-REQUESTS: Final = frozenset(
+OF_REQUEST: Final[Mapping[type[Request], Event]] = MappingProxyType(
     {
-        Event.GOTO,
-        Event.CONTROL,
-        Event.RESUME,
-        Event.ARM,
-        Event.DISARM,
-        Event.FORCE_DISARM,
-        Event.TAKE_OFF,
-        Event.LAND,
-        Event.RETURN,
-        Event.HOLD,
-        Event.ABORT,
-        Event.PHOTO,
-        Event.MISSION,
-        Event.STREAM_BEGIN,
-        Event.STREAM_END,
-        Event.OTHER_MODE,
-        Event.FENCE,
+        GoTo: Event.GOTO,
+        TakeControl: Event.CONTROL,
+        Resume: Event.RESUME,
+        Arm: Event.ARM,
+        Disarm: Event.DISARM,
+        TakeOff: Event.TAKE_OFF,
+        Land: Event.LAND,
+        ReturnHome: Event.RETURN,
+        Hold: Event.HOLD,
+        Abort: Event.ABORT,
+        TakePhoto: Event.PHOTO,
+        StartMission: Event.MISSION,
+        BeginStream: Event.STREAM_BEGIN,
+        EndStream: Event.STREAM_END,
+        SetMode: Event.OTHER_MODE,
+        SwitchFence: Event.FENCE,
     }
 )
+"""The event of a request; a mode by its name may mean another, and a disarming may be forced."""
+
+REQUESTS: Final = frozenset({*OF_REQUEST.values(), Event.FORCE_DISARM})
 """The events that are requests: each gets exactly one verdict."""
 
 NEEDS_OPERATOR: Final = REQUESTS - {
@@ -160,37 +164,8 @@ SAW: Final = {
 
 def event_of(request: Request) -> Event:
     """The event, and so the row of the table, that decides on `request`."""
-    match request:
-        case GoTo():
-            return Event.GOTO
-        case TakeControl():
-            return Event.CONTROL
-        case Resume():
-            return Event.RESUME
-        case Arm():
-            return Event.ARM
-        case Disarm(force=force):
-            return Event.FORCE_DISARM if force else Event.DISARM
-        case TakeOff():
-            return Event.TAKE_OFF
-        case Land():
-            return Event.LAND
-        case ReturnHome():
-            return Event.RETURN
-        case Hold():
-            return Event.HOLD
-        case Abort():
-            return Event.ABORT
-        case TakePhoto():
-            return Event.PHOTO
-        case StartMission():
-            return Event.MISSION
-        case BeginStream():
-            return Event.STREAM_BEGIN
-        case EndStream():
-            return Event.STREAM_END
-        case SetMode(meaning=meaning):
-            return ASKED[meaning]
-        case SwitchFence():
-            return Event.FENCE
-    assert_never(request)
+    if isinstance(request, SetMode):
+        return ASKED[request.meaning]
+    if isinstance(request, Disarm) and request.force:
+        return Event.FORCE_DISARM
+    return OF_REQUEST[type(request)]

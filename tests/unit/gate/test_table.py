@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from click.testing import CliRunner
@@ -14,14 +15,23 @@ from gcs.cli.fsa import fsa
 from gcs.gate.machine import render, table
 from gcs.gate.machine.actions import Action
 from gcs.gate.machine.checks import Check
-from gcs.gate.machine.events import REQUESTS, Event, event_of
+from gcs.gate.machine.events import OF_REQUEST, REQUESTS, Event, event_of
 from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import cannot_happen, unchanged
 from gcs.gate.machine.rows.row import COLUMNS, Branch, during, row
 from gcs.gate.machine.sentences import ENDED, REFUSED
 from gcs.gate.machine.table import ROWS, STREAMS, TABLE, Streams
 from gcs.gate.machine.turn import Reply
-from gcs.gate.requests import Land, SetMode, TakeControl
+from gcs.gate.requests import (
+    Arm,
+    Disarm,
+    Hold,
+    Land,
+    Request,
+    SetMode,
+    TakeControl,
+    TakePhoto,
+)
 from gcs.gate.states import FlightMode, State
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -112,6 +122,13 @@ def test_nothing_is_streamed_where_the_vehicle_flies_by_itself() -> None:
     }
     awaiting = {s for s, what in STREAMS.items() if what is Streams.HOLD_GOAL_UNTIL_MODE}
     assert awaiting == {State.FLYING_MISSION, State.RETURNING, State.LANDING}
+
+
+def test_every_request_has_an_event_of_its_own() -> None:
+    assert OF_REQUEST.keys() == set(get_args(Request))
+    assert len(set(OF_REQUEST.values())) == len(OF_REQUEST)
+    assert event_of(Disarm(force=True)) is Event.FORCE_DISARM
+    assert all(event_of(kind()) is OF_REQUEST[kind] for kind in (Arm, Disarm, Hold, TakePhoto))
 
 
 def test_a_mode_asked_for_by_name_is_the_request_it_means() -> None:
