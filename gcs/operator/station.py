@@ -26,7 +26,7 @@ from gcs.frames import Vec3
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.conversation import Conversation, TrackedRequest
 from gcs.operator.failures import Disconnected, NotCompleted, Refused
-from gcs.operator.stream import Stream
+from gcs.operator.stream import Stream, number
 
 TELEMETRY_WAIT_S = 5.0
 ANSWER_WAIT_S = 10.0
@@ -133,7 +133,7 @@ class Station:
         self, up_m: float, *, wait: bool = True, timeout_s: float | None = None
     ) -> Operation:
         """Climb to `up_m` metres above the take-off point and hover."""
-        return self.request(ipc.Ask(0, "takeoff", up_m=_finite(up_m)), wait, timeout_s)
+        return self.request(ipc.Ask(0, "takeoff", up_m=number(up_m)), wait, timeout_s)
 
     def goto(
         self,
@@ -146,7 +146,7 @@ class Station:
         timeout_s: float | None = None,
     ) -> Operation:
         """Fly straight there and hover."""
-        goal = (_finite(east_m), _finite(north_m), _finite(up_m))
+        goal = (number(east_m), number(north_m), number(up_m))
         return self.request(ipc.Ask(0, "goto", goal_enu=goal, yaw_deg=yaw_deg), wait, timeout_s)
 
     def orbit(
@@ -400,8 +400,3 @@ class Station:
                 self._unknown_messages = event.text
             case _:
                 pass
-
-
-def _finite(metres: float) -> float | None:
-    """JSON has no NaN: null stands for it, and the gate refuses it by name."""
-    return float(metres) if math.isfinite(metres) else None

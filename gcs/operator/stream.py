@@ -111,11 +111,11 @@ class Stream:
         Disconnected."""
         self.send(
             ipc.Stream(
-                roll_deg=_number(roll_deg),
-                pitch_deg=_number(pitch_deg),
-                yaw_deg=_number(yaw_deg),
+                roll_deg=number(roll_deg),
+                pitch_deg=number(pitch_deg),
+                yaw_deg=number(yaw_deg),
                 yaw_rate_deg_s=yaw_rate_deg_s,
-                thrust=_number(thrust),
+                thrust=number(thrust),
             )
         )
 
@@ -145,9 +145,9 @@ class Stream:
 
 
 def _vector(east: float, north: float, up: float) -> ipc.Maybe3:
-    return (_number(east), _number(north), _number(up))
+    return (number(east), number(north), number(up))
 
 
-def _number(value: float) -> float | None:
+def number(value: float) -> float | None:
     """JSON has no NaN: null stands for it, and the gate refuses it by name."""
     return float(value) if math.isfinite(value) else None
