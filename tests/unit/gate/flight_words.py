@@ -111,7 +111,6 @@ FACTS: dict[str, Callable[[str], object]] = {
     "control": lambda word: Control[word],
     "guided_until_ns": int,
     "hold_again_ns": lambda _: None,
-    "back_to": lambda _: None,
     "verifier": lambda _: None,
     "return_up_m": lambda _: None,
     "task": lambda _: None,
