@@ -22,10 +22,10 @@ from pymavlink.dialects.v20 import all as dialect
 from gcs.report import DecisionItem
 from gcs.session import inputs
 from gcs.session.effects import Effect, Record
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, flying
 from tests.loopback.flight import HOMES
 from tests.loopback.plan_clients import NORTH_DEG, PlanFlight, Pymavlink, mission
-from tests.loopback.test_bridge_streams import VELOCITY_ONLY, flying
+from tests.loopback.test_bridge_streams import VELOCITY_ONLY
 
 STEP_S = 0.05
 ITEMS = 100

@@ -7,16 +7,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.config import StationConfig
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
+from gcs.gate.states import Control, State
 from gcs.report import DecisionItem
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
+from tests.loopback.copies import fly_or_copy
 from tests.loopback.flight import Flight, Personality
 from tests.loopback.lossy_link import CLEAR, Weather
 from vehicle_sim.autopilot.firmware import Firmware
@@ -27,6 +29,9 @@ BRIDGE = StationConfig(
     endpoints=["test"], name="loopback", bridge=True, clients=["test"], compid=STATION[1]
 )
 COMMAND_PARAMS = 7
+ACCEPTED = 0
+ARM, TAKE_OFF = 400, 22
+METRES_PER_DEGREE = 111_319.5
 ARRIVES_M = {"px4": 1.3, "ardupilot": 0.7}
 """How near its goal it has arrived.  A real PX4 flew 0.6 to 1.3 m past goals on legs of 10 to 20 m
 in open air; where it turns round it is slow, and the arrival radius is up to 1 m."""
@@ -198,3 +203,42 @@ class BridgedFlight(Flight):
         """Every verdict and ending on the record, with one outcome or with any."""
         items = [item for _, item in self.records if isinstance(item, DecisionItem)]
         return [item for item in items if not outcome or item.outcome == outcome]
+
+
+F = TypeVar("F", bound=BridgedFlight)
+
+
+def north_of_home(
+    flight: BridgedFlight, north_m: float, up_m: float = 0.0
+) -> tuple[float, float, float]:
+    """Degrees, and metres above the sea."""
+    telemetry = flight.session.telemetry
+    assert telemetry is not None
+    assert telemetry.home is not None
+    lat, lon, alt = telemetry.home
+    return lat + north_m / METRES_PER_DEGREE, lon, alt + up_m
+
+
+def take_off(flight: BridgedFlight) -> None:
+    """A client joins, arms the vehicle and takes off: to PX4's own height, or to 5 m."""
+    _, client = joined(flight)
+    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
+    up_m = math.nan if flight.personality == "px4" else 5.0
+    assert client.ask(TAKE_OFF, 0, 0, 0, *[math.nan] * 3, up_m) == ACCEPTED
+    flight.until(
+        lambda: flight.is_in(State.HOVERING) and flight.session.gate.control is Control.OURS
+    )
+
+
+def joined(flight: F) -> tuple[F, Client]:
+    """With one client; the vehicle stands at home, and is known."""
+    client = flight.join()
+    flight.connected()
+    return flight, client
+
+
+def flying(personality: Personality) -> tuple[BridgedFlight, Client]:
+    """Hovering at home, for its one client."""
+    flight = BridgedFlight(personality)
+    fly_or_copy(flight, (BridgedFlight, personality), lambda: take_off(flight))
+    return flight, flight.clients[1]

@@ -6,9 +6,9 @@ import pytest
 
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
+from tests.loopback.bridged import north_of_home, take_off
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import PlanFlight
-from tests.loopback.test_bridge_meaning import north_of_home, take_off
 
 ACCEPTED, TEMPORARILY_REJECTED = 0, 1
 CONTROL, REPOSITION = 32100, 192

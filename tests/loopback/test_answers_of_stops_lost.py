@@ -9,11 +9,10 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.states import State
 from gcs.wire.frame import Frame, split
-from tests.loopback.bridged import Client
+from tests.loopback.bridged import Client, joined, take_off
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.lossy_link import CLEAR, Air
 from tests.loopback.plan_clients import Mavsdk, PlanFlight, mission
-from tests.loopback.test_bridge_meaning import take_off
 
 ACCEPTED, IN_PROGRESS = 0, 5
 RETURN, LAND, TAKE_OFF, MISSION_START, ARM = 20, 21, 22, 300, 400
@@ -58,9 +57,7 @@ def test_what_the_heartbeat_shows_is_answered(command: int, personality: Persona
 
 
 def test_a_take_off_of_a_px4_is_answered_while_it_climbs() -> None:
-    flight = PlanFlight("px4")
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight("px4"))
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
     flight.down = WayDown(CLEAR, 1)
     assert client.ask(TAKE_OFF, 0, 0, 0, NAN, NAN, NAN, NAN, within_s=SOON_S) == ACCEPTED

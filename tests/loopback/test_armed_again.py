@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.bridge.conversation.dialogue import AGAIN_NS
-from tests.loopback.bridged import VEHICLE, BridgedFlight
+from tests.loopback.bridged import VEHICLE, BridgedFlight, joined
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.stranger import stranger
 
@@ -20,9 +20,7 @@ def test_an_arming_after_somebody_has_disarmed_it_is_decided_anew(
     personality: Personality,
 ) -> None:
     """Within the time in which the same command may be a repetition."""
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight(personality))
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
     answered_ns = flight.now_ns
     stranger(flight, DISARM)
@@ -35,9 +33,7 @@ def test_an_arming_after_somebody_has_disarmed_it_is_decided_anew(
 
 @both
 def test_an_arming_whose_answer_was_lost_is_not_decided_twice(personality: Personality) -> None:
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight(personality))
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
     for _ in range(3):
         flight.run(0.5)

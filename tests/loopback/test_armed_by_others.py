@@ -12,7 +12,7 @@ from gcs import ipc
 from gcs.gate.effects import Level
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.bridged import BridgedFlight
+from tests.loopback.bridged import BridgedFlight, joined
 from tests.loopback.fleet import Fleet
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.test_arm_authorizer import GUARDED
@@ -67,9 +67,7 @@ def test_a_strangers_arming_is_told_once_and_again_when_it_is_another_one(
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
 def test_an_arming_of_a_client_or_of_an_operator_is_not_told_so(personality: Personality) -> None:
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight(personality))
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
     flight.beating(3.0)
     assert client.ask(ARM, 0, within_s=10) == ACCEPTED
@@ -118,9 +116,7 @@ def test_a_vehicle_that_is_lost_and_back_is_compared_with_how_it_was(armed: bool
 
 
 def test_an_arming_that_the_bridge_has_authorized_for_another_one_is_told_too() -> None:
-    flight = BridgedFlight("px4", params=GUARDED)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight("px4", params=GUARDED))
     stranger_arms(flight)
     flight.run(1.0)
     stranger_arms(flight)  # PX4 refuses the first one while it asks

@@ -19,7 +19,7 @@ from gcs.gate.states import State
 from gcs.wire.codec import decode
 from gcs.wire.messages import SetAttitudeTarget
 from tests.loopback.boxed_stream import BoxedStream, box_fence, taken_off
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, joined
 from tests.loopback.flight import PERSONALITIES, Personality
 from vehicle_sim.simulation.fault_script import fault_of
 
@@ -87,9 +87,7 @@ def flying(
     params: dict[str, float] | None = None,
 ) -> tuple[BridgedFlight, Client, Attitudes]:
     """Armed and taken off by the client, hovering above home."""
-    flight = BridgedFlight(personality, policy=policy, params=params)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight(personality, policy=policy, params=params))
     taken_off(flight, client, up_m)
     return flight, client, Attitudes(flight, client)
 

@@ -15,9 +15,8 @@ from gcs.session import inputs
 from gcs.session.effects import Finish
 from gcs.station.session import MAX_FAULTS
 from gcs.wire.frame import Frame, split
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, flying, joined
 from tests.loopback.flight import PERSONALITIES, Personality
-from tests.loopback.test_bridge import flying
 
 NO_TEXT = b"\xff"
 """No character of UTF-8 begins so."""
@@ -35,9 +34,7 @@ def send_payload(client: Client, message: Any, payload: bytes) -> None:
 
 @each
 def test_a_text_of_any_bytes_is_refused_and_breaks_nothing(personality: Personality) -> None:
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight(personality))
     name = NO_TEXT * 16
     send_payload(
         client,
@@ -60,26 +57,9 @@ def test_a_text_of_any_bytes_is_refused_and_breaks_nothing(personality: Personal
     assert answer.ack == 0
 
 
-def test_a_heading_without_end_is_refused() -> None:
-    flight = BridgedFlight("px4")
-    client = flight.join()
-    flight.connected()
-    place = (473977420, 85455940, 500.0)
-    for heading in (math.inf, -math.inf):
-        message = dialect.MAVLink_command_int_message(
-            *VEHICLE, 5, dialect.MAV_CMD_DO_REPOSITION, 0, 0, -1.0, 1.0, 0.0, heading, *place
-        )
-        client.send(message)
-    flight.run(0.2)
-    assert [ack.result for ack in client.acks(192)] == [dialect.MAV_RESULT_DENIED] * 2
-    assert {one.code for one in flight.decisions("refused")} == {"NON_FINITE"}
-
-
 def test_no_client_ends_the_station_with_frames_that_it_cannot_take() -> None:
     """An internal error that a client's frame causes is a bug; the others go on flying."""
-    flight = BridgedFlight("px4")
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight("px4"))
     report = "Traceback\nValueError: planted"
 
     def ends(link: int) -> bool:
@@ -94,9 +74,7 @@ def test_no_client_ends_the_station_with_frames_that_it_cannot_take() -> None:
 def test_no_client_makes_the_gate_blind(personality: Personality) -> None:
     """Whatever a client asks not to be sent, the gate goes on seeing position, mode, arming and
     home; the client itself is sent no more of it."""
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight(personality))
     for number in (*range(400), 410, 411):
         client.command(dialect.MAV_CMD_SET_MESSAGE_INTERVAL, number - 0.4, -1.0)
         client.command(dialect.MAV_CMD_SET_MESSAGE_INTERVAL, number, -1.0, 1.0)

@@ -9,39 +9,23 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs import ipc
 from gcs.gate.condition import Condition
-from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.bridge_clients import command_of
-from tests.loopback.bridged import STATION, VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import STATION, VEHICLE, BridgedFlight, Client, flying, joined
 from tests.loopback.flight import PERSONALITIES, Personality
-from tests.loopback.test_bridge_streams import VELOCITY_ONLY, flying
+from tests.loopback.test_bridge_streams import in_control, velocity
 
 ACCEPTED, TEMPORARILY_REJECTED, DENIED = 0, 1, 2
-ARM, INTERVAL, MOUNT, LOGGING_START, LOGGING_STOP = 400, 511, 205, 2510, 2511
+ARM, INTERVAL, MOUNT, LOGGING_START = 400, 511, 205, 2510
 NAN = float("nan")
 
 pytestmark = pytest.mark.parametrize("personality", PERSONALITIES)
-
-
-def joined(personality: Personality, rules: str = "") -> tuple[BridgedFlight, Client]:
-    policy = parse_policy(f"[bridge]\n{rules}", "my.toml")
-    flight = BridgedFlight(personality, policy=policy)
-    client = flight.join()
-    flight.connected()
-    return flight, client
 
 
 def armed(flight: BridgedFlight, client: Client) -> None:
     if flight.personality == "ardupilot":
         client.ask(176, 1.0, 4.0)
     assert client.ask(ARM, 1.0) == ACCEPTED
-
-
-def logging_commands(flight: BridgedFlight) -> list[int]:
-    """To begin or end the sending of a log, on the vehicle's link."""
-    sent = (command_of(frame) for frame in flight.to_vehicle("COMMAND_LONG"))
-    return [command for command in sent if command in (LOGGING_START, LOGGING_STOP)]
 
 
 def log_data(client: Client) -> None:
@@ -55,13 +39,18 @@ def burst(client: Client) -> None:
 
 
 def test_logs_and_files_are_read_on_the_ground_only(personality: Personality) -> None:
-    flight, client = joined(personality)
+    """And none is read on in the air."""
+    flight, client = joined(BridgedFlight(personality))
     log_data(client)
     burst(client)
     flight.run(0.5)
     read = ("LOG_REQUEST_DATA", "FILE_TRANSFER_PROTOCOL")
     assert [len(flight.to_vehicle(name)) for name in read] == [1, 1]
     armed(flight, client)
+    assert flight.to_vehicle("LOG_REQUEST_END") == []
+    flight.run(1.5)
+    assert len(flight.to_vehicle("LOG_REQUEST_END")) == 1
+    assert any("the reading of its log is ended" in line for line in flight.told())
     log_data(client)
     burst(client)
     flight.run(0.5)
@@ -71,41 +60,8 @@ def test_logs_and_files_are_read_on_the_ground_only(personality: Personality) ->
     assert client.ask(LOGGING_START) == TEMPORARILY_REJECTED
 
 
-def test_a_log_that_is_being_read_is_not_read_on_in_the_air(personality: Personality) -> None:
-    flight, client = joined(personality)
-    log_data(client)
-    flight.run(2.0)
-    assert flight.to_vehicle("LOG_REQUEST_END") == []
-    armed(flight, client)
-    flight.run(3.0)
-    assert len(flight.to_vehicle("LOG_REQUEST_END")) == 1
-    assert any("the reading of its log is ended" in line for line in flight.told())
-
-
-def test_a_log_is_not_sent_on_in_the_air_as_it_is_written(personality: Personality) -> None:
-    flight, client = joined(personality)
-    client.command(LOGGING_START)
-    flight.run(0.5)
-    assert logging_commands(flight) == [LOGGING_START]
-    armed(flight, client)
-    flight.run(3.0)
-    assert logging_commands(flight) == [LOGGING_START, LOGGING_STOP]
-
-
-def test_the_policy_may_let_them_be_read_in_the_air(personality: Personality) -> None:
-    flight, client = joined(personality, 'downloads = "forward"')
-    armed(flight, client)
-    log_data(client)
-    burst(client)
-    flight.run(0.5)
-    read = ("LOG_REQUEST_DATA", "FILE_TRANSFER_PROTOCOL")
-    flight.run(2.0)
-    assert [len(flight.to_vehicle(name)) for name in read] == [1, 1]
-    assert flight.to_vehicle("LOG_REQUEST_END") == []
-
-
 def test_a_client_s_rates_are_bounded(personality: Personality) -> None:
-    flight, client = joined(personality)
+    flight, client = joined(BridgedFlight(personality))
     assert client.ask(INTERVAL, 105.0, 100.0) == ACCEPTED
     asked = [
         struct.unpack_from("<ff", frame.payload)
@@ -120,7 +76,7 @@ def test_a_client_s_rates_are_bounded(personality: Personality) -> None:
 
 
 def test_only_the_client_in_control_points_the_camera(personality: Personality) -> None:
-    flight, client = joined(personality)
+    flight, client = joined(BridgedFlight(personality))
     other = flight.join(246)
     before = len(flight.to_vehicle("COMMAND_LONG"))
     other.command(MOUNT, 0.0, 0.0, 90.0, 0.0, 0.0, 0.0, 2.0)
@@ -139,41 +95,8 @@ def test_only_the_client_in_control_points_the_camera(personality: Personality) 
     assert flight.session.gate.state is State.GROUNDED
 
 
-def in_control(flight: BridgedFlight) -> int:
-    """The number of the operator in control; 0: nobody."""
-    client = flight.session._operators.in_control
-    return client.client if client else 0
-
-
-def velocity(client: Client, v_n: float = 1.0) -> None:
-    client.send(
-        dialect.MAVLink_set_position_target_local_ned_message(
-            0, *VEHICLE, 1, VELOCITY_ONLY, 0, 0, 0, v_n, 0, 0, 0, 0, 0, 0, 0
-        )
-    )
-
-
-def test_no_sample_that_is_not_flown_takes_control(personality: Personality) -> None:
-    """One alone, one without numbers, and one that is refused; a stream that is flown does
-    (test_bridge_streams)."""
-    flight, client = joined(personality)
-    for _ in range(3):
-        velocity(client)
-        flight.beating(2.0)
-    assert in_control(flight) == 0
-    for _ in range(20):
-        velocity(client, NAN)
-        flight.run(0.1)
-    assert in_control(flight) == 0, "no numbers"
-    for _ in range(3):
-        velocity(client)
-        flight.run(0.1)
-    assert in_control(flight) == 0, "it stands on the ground"
-    assert "NOT_FLYING" in client.texts()
-
-
 def test_what_cannot_be_read_takes_no_control(personality: Personality) -> None:
-    flight, client = joined(personality)
+    flight, client = joined(BridgedFlight(personality))
     flight.feed(inputs.OperatorLine(1, ipc.Ask(7, "goto")))
     flight.feed(inputs.OperatorLine(1, ipc.Ask(8, "no such word")))
     flight.run(0.2)
@@ -185,23 +108,20 @@ def test_what_cannot_be_read_takes_no_control(personality: Personality) -> None:
 def test_who_takes_over_need_not_wait_for_the_end_of_a_stream(personality: Personality) -> None:
     flight, client = flying(personality)
     other = flight.join(246)
-    for _ in range(20):
-        velocity(client)
-        flight.run(0.1)
+    velocity(client, 1.0, 40)
     assert flight.is_in(State.STREAMING)
     assert other.ask(32100, 1.0, 1.0) == ACCEPTED
     flight.run(0.1)
     assert flight.is_in(State.HOVERING)
     assert "The stream of operator 1000 is over" in flight.told()
-    velocity(client)
-    flight.run(0.1)
+    velocity(client, 1.0, 2)
     assert flight.is_in(State.HOVERING), "its samples are refused"
 
 
 def test_who_waits_for_the_reading_of_a_plan_is_told_so_by_the_protocol(
     personality: Personality,
 ) -> None:
-    flight, client = joined(personality)
+    flight, client = joined(BridgedFlight(personality))
     other = flight.join(246)
     flight.run(3.0)
     for _ in range(4):
@@ -212,15 +132,6 @@ def test_who_waits_for_the_reading_of_a_plan_is_told_so_by_the_protocol(
     assert [(ack.type, ack.mission_type) for ack in acks] == [(1, 0)], "MAV_MISSION_ERROR"
     assert "another client reads a plan" in other.texts()
     assert client.messages("MISSION_ACK") == []
-
-
-def test_a_refused_plan_is_told_in_words_once_in_some_seconds(personality: Personality) -> None:
-    flight, client = joined(personality)
-    for _ in range(50):
-        client.send(dialect.MAVLink_mission_count_message(*VEHICLE, 3000, 0))
-        flight.run(0.02)
-    assert len(client.messages("MISSION_ACK")) == 50
-    assert client.texts().count("at most 2000") == 1
 
 
 def test_a_second_bridge_of_the_same_address_is_told_on_both_sides(

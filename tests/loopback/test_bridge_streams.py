@@ -11,26 +11,12 @@ from gcs import ipc
 from gcs.gate.states import Control, State
 from gcs.report import DecisionItem
 from gcs.session import inputs
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import ACCEPTED, VEHICLE, BridgedFlight, Client, flying, joined
 from tests.loopback.flight import PERSONALITIES, Personality
 
-ACCEPTED = 0
-ARM, TAKE_OFF, SET_MODE = 400, 22, 176
+SET_MODE = 176
 VELOCITY_ONLY = 0xDC7
 FENCE_M = 150.0
-
-
-def flying(personality: Personality) -> tuple[BridgedFlight, Client]:
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
-    assert client.ask(ARM, 1, within_s=10) == ACCEPTED
-    up_m = math.nan if personality == "px4" else 5.0
-    assert client.ask(TAKE_OFF, 0, 0, 0, math.nan, math.nan, math.nan, up_m) == ACCEPTED
-    flight.until(
-        lambda: flight.is_in(State.HOVERING) and flight.session.gate.control is Control.OURS
-    )
-    return flight, client
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
@@ -44,13 +30,7 @@ def test_samples_that_come_while_control_is_being_taken_are_not_told_as_refused(
     flight.run(2.0)
     client.command(SET_MODE, 1, *guided)
     flight.until(lambda: flight.session.gate.control is Control.TAKING, 2.0)
-    for _ in range(60):
-        client.send(
-            dialect.MAVLink_set_position_target_local_ned_message(
-                0, *VEHICLE, 1, VELOCITY_ONLY, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0, 0
-            )
-        )
-        flight.run(0.05)
+    velocity(client, 1.0, 60)
     assert flight.is_in(State.STREAMING)
     streams = [each for each in flight.decisions() if each.word == "stream"]
     assert [(each.outcome, each.code) for each in streams] == [
@@ -67,14 +47,9 @@ def test_full_speed_at_the_fence_is_held_inside_and_flown_back(personality: Pers
     def stream(v_n: float, seconds: float) -> float:
         farthest = 0.0
         for count in range(round(seconds * 20)):
-            client.send(
-                dialect.MAVLink_set_position_target_local_ned_message(
-                    0, *VEHICLE, 1, VELOCITY_ONLY, 0, 0, 0, v_n, 0, 0, 0, 0, 0, 0, 0
-                )
-            )
             if count % 20 == 0:
                 client.beat()
-            flight.run(0.05)
+            velocity(client, v_n, 1)
             farthest = max(farthest, flight.truth_enu()[1])
         return farthest
 
@@ -113,10 +88,13 @@ def velocity(client: Client, v_n: float, times: int) -> None:
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_stream_that_is_refused_takes_no_control(personality: Personality) -> None:
-    """On the ground, as a PX4's client does before it asks for OFFBOARD; and in the air."""
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
+    """On the ground, as a PX4's client does before it asks for OFFBOARD, and in the air; nor does
+    one without numbers."""
+    flight, client = joined(BridgedFlight(personality))
+    for _ in range(3):  # each alone
+        velocity(client, 1.0, 1)
+        flight.beating(2.0)
+    velocity(client, math.nan, 20)
     velocity(client, 1.0, 20)
     assert "NOT_FLYING" in client.texts()
     assert in_control(flight) == 0

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from pymavlink.dialects.v20 import all as dialect
 
-from tests.loopback.bridged import VEHICLE, BridgedFlight
+from tests.loopback.bridged import VEHICLE, BridgedFlight, joined
 
 NAME = b"MIS_TAKEOFF_ALT"
 REAL32 = 9
 
 
 def test_nobody_climbs_before_the_vehicle_has_told_the_height_that_a_client_wrote() -> None:
-    flight = BridgedFlight("px4")
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight("px4"))
     for height_m, word, mode in (
         (10.0, "takeoff", ""),
         (11.0, "mission_start", ""),

@@ -18,7 +18,7 @@ from gcs.report import Direction, FrameItem, FramesItem
 from gcs.session import inputs
 from gcs.station.client_frames import UPGRADES_NS
 from gcs.wire.frame import Frame, split
-from tests.loopback.bridged import STATION, BridgedFlight, Client
+from tests.loopback.bridged import STATION, BridgedFlight, Client, joined
 from tests.loopback.flight import PERSONALITIES, Personality
 
 ARM, TAKE_OFF, ORBIT = 400, 22, 34
@@ -88,9 +88,7 @@ def test_answers_of_the_bridge_do_not_look_like_lost_frames(
 def test_what_a_client_asked_less_of_does_not_look_like_lost_frames(
     personality: Personality, key: bytes | None
 ) -> None:
-    flight = BridgedFlight(personality, vehicle_key=key, station_key=key)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight(personality, vehicle_key=key, station_key=key))
     assert client.ask(511, 30, 500_000) == client.ask(511, 32, 500_000) == 0
     flight.beating(5)
     client.heard.clear()

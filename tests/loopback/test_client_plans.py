@@ -14,7 +14,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from gcs.wire.codec import decode
 from gcs.wire.messages import CommandLong, MissionClearAll
-from tests.loopback.bridged import VEHICLE
+from tests.loopback.bridged import VEHICLE, joined
 from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.lossy_link import Weather
 from tests.loopback.plan_clients import (
@@ -88,54 +88,6 @@ def test_a_mission_that_leaves_the_fence_never_reaches_the_vehicle(
     (decision,) = flight.decisions("refused")
     assert decision.word == "mission_upload"
     assert decision.code in ("OUTSIDE_FENCE", "LEG_LEAVES_FENCE", "TOO_FAR")
-
-
-@pytest.mark.parametrize("personality", PERSONALITIES)
-def test_a_mission_of_a_client_is_flown(personality: Personality) -> None:
-    flight = connected(personality)
-    client = flight.clients[1]
-    assert Mavsdk(flight, client, mission(personality, *SQUARE)).ended() == "complete"
-    assert client.ask(ARM, 1) == ACCEPTED
-    client.command(MISSION_START)
-    flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
-
-
-@pytest.mark.parametrize("personality", PERSONALITIES)
-def test_a_mission_start_waits_for_the_arming_that_is_under_way(personality: Personality) -> None:
-    """PX4 arms at a mission start by itself; a client that arms and starts at once asks for both.
-    The start is asked for when the vehicle is armed, and verified then."""
-    flight = connected(personality)
-    client = flight.clients[1]
-    assert Mavsdk(flight, client, mission(personality, *SQUARE)).ended() == "complete"
-    client.command(ARM, 1)
-    client.command(MISSION_START)
-    flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
-    assert [ack.result for ack in client.acks(ARM)] == [ACCEPTED]
-    flight.until(lambda: bool(client.acks(MISSION_START)), 3.0)
-    assert [ack.result for ack in client.acks(MISSION_START)] == [ACCEPTED]
-
-
-@pytest.mark.parametrize("personality", PERSONALITIES)
-def test_a_client_clears_the_mission(personality: Personality) -> None:
-    flight = connected(personality)
-    client = flight.clients[1]
-    Mavsdk(flight, client, mission(personality, *SQUARE)).ended()
-    client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, 0))
-    flight.run(1.0)
-    assert flight.vehicle.plan == ()
-    assert [ack.type for ack in client.messages("MISSION_ACK")] == [ACCEPTED, ACCEPTED]
-
-
-@pytest.mark.parametrize("personality", PERSONALITIES)
-def test_a_client_that_falls_silent_half_way_changes_nothing(personality: Personality) -> None:
-    flight = connected(personality)
-    before = flight.vehicle.plan
-    client = flight.clients[1]
-    client.send(dialect.MAVLink_mission_count_message(*VEHICLE, 5, 0))
-    flight.beating(15.0)
-    assert flight.vehicle.plan == before
-    assert [ack.type for ack in client.messages("MISSION_ACK")] == [15]
-    assert flight.decisions("refused")[-1].code == "NO_ANSWER"
 
 
 @pytest.mark.parametrize("personality", PERSONALITIES)
@@ -225,9 +177,9 @@ def test_five_hundred_items_cross_two_links_that_lose_a_quarter(
     seed: int, personality: Personality
 ) -> None:
     """Complete within two minutes, or refused whole; a client that keeps on gets its ACK."""
-    flight = PlanFlight(personality, seed=seed, vehicle_weather=LOSSY, client_weather=LOSSY)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(
+        PlanFlight(personality, seed=seed, vehicle_weather=LOSSY, client_weather=LOSSY)
+    )
     before = flight.vehicle.plan
     upload = Pymavlink(flight, client, long_mission(personality))
     result = upload.ended(LONG_S)
@@ -301,9 +253,7 @@ def test_where_the_policy_lets_them_they_are_on_board_whole(
     plan: Callable[[Personality], list[PlanItem]], personality: Personality
 ) -> None:
     rules = structs.replace(DEFAULT.bridge, fence="forward", rally="forward")
-    flight = PlanFlight(personality, policy=structs.replace(DEFAULT, bridge=rules))
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight(personality, policy=structs.replace(DEFAULT, bridge=rules)))
     items = plan(personality)
     upload = Mavsdk(flight, client, items)
     assert upload.ended() == "complete"
@@ -381,9 +331,7 @@ class Silent(Upload):
 
 def test_an_upload_that_is_given_up_for_another_one_is_ended_and_on_the_record() -> None:
     """A script that begins the next plan before it has the answer of the one before."""
-    flight = PlanFlight("px4", policy=FREE)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight("px4", policy=FREE))
     abandoned = Silent(flight, client, mission("px4", *SQUARE))
     flight.run(0.3)
     rally = Mavsdk(flight, client, rally_point("px4"))
@@ -396,19 +344,3 @@ def test_an_upload_that_is_given_up_for_another_one_is_ended_and_on_the_record()
     flight.run(20.0)
     assert abandoned.acks == [CANCELLED]
     assert rally.acks == [ACCEPTED]
-
-
-def test_an_upload_of_rally_points_goes_on_while_the_mission_is_cleared() -> None:
-    flight = PlanFlight("px4", policy=FREE)
-    client = flight.join()
-    flight.connected()
-    assert Mavsdk(flight, client, mission("px4", *SQUARE)).ended() == "complete"
-    rally = Mavsdk(flight, client, rally_point("px4"))
-    heard = len(client.heard)
-    flight.run(0.0015)  # the count is here, its item is not
-    client.send(dialect.MAVLink_mission_clear_all_message(*VEHICLE, 0))
-    assert rally.ended() == "complete"
-    flight.run(20.0)
-    acks = [one.message for one in client.heard[heard:] if one.message.get_type() == "MISSION_ACK"]
-    assert sorted((ack.mission_type, ack.type) for ack in acks) == [(0, 0), (RALLY, ACCEPTED)]
-    assert not flight.vehicle.plan

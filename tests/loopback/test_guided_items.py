@@ -14,11 +14,10 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, north_of_home, take_off
 from tests.loopback.copies import fly_or_copy
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import PlanFlight
-from tests.loopback.test_bridge_meaning import north_of_home, take_off
 from tests.loopback.test_orbits import ORBIT
 
 ACCEPTED, DENIED = dialect.MAV_MISSION_ACCEPTED, dialect.MAV_MISSION_DENIED

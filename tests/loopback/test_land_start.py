@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.states import State
-from tests.loopback.bridged import Client
+from tests.loopback.bridged import Client, joined
 from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.plan_clients import (
     ACCEPTED,
@@ -40,9 +40,7 @@ def with_landing(personality: Personality) -> list[PlanItem]:
 
 def on_its_way(personality: Personality, items: list[PlanItem]) -> tuple[PlanFlight, Client]:
     """On the way to its first waypoint."""
-    flight = PlanFlight(personality)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight(personality))
     assert Mavsdk(flight, client, items).ended() == "complete", client.texts()
     assert client.ask(ARM, 1) == ACCEPTED
     client.command(MISSION_START)

@@ -19,7 +19,7 @@ from gcs.gate.states import State
 from gcs.record.writer import Recorder
 from gcs.session import inputs
 from tests.audits import audited, read
-from tests.loopback.bridged import VEHICLE, Client
+from tests.loopback.bridged import VEHICLE, Client, joined
 from tests.loopback.flight import Personality
 from tests.loopback.lossy_link import Weather
 from tests.loopback.observed import START_NS
@@ -39,9 +39,7 @@ PLACES = ((20.0, 0.0, 10.0), (20.0, 15.0, 10.0))
 
 def with_mission(personality: Personality = "px4") -> tuple[PlanFlight, Client]:
     """On the ground, a mission brought on board and verified."""
-    flight = PlanFlight(personality)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight(personality))
     upload = QGroundControl(flight, client, mission(personality, *PLACES))
     assert upload.ended() == "complete", client.texts()
     flight.beating(1.5)
@@ -187,9 +185,7 @@ def test_what_is_wrong_with_the_mission_the_arming_is_refused_with() -> None:
 def test_a_mission_that_is_not_known_is_read_by_the_first_try() -> None:
     """Put on board before this station was there: QGroundControl tries the mode three times."""
     items = with_mission()[0].vehicle.plan
-    flight = PlanFlight("px4")
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight("px4"))
     flight.vehicle.load_plan(items)
     in_mission_mode(flight, client)
     assert [ack.result for ack in client.acks(SET_MODE)] == [TEMPORARILY_REJECTED, ACCEPTED]
@@ -198,9 +194,7 @@ def test_a_mission_that_is_not_known_is_read_by_the_first_try() -> None:
 
 
 def test_without_a_mission_the_mode_is_refused() -> None:
-    flight = PlanFlight("px4")
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight("px4"))
     set_mode(client)
     flight.until(lambda: bool(client.acks(SET_MODE)), 5.0)
     assert client.acks(SET_MODE)[0].result != ACCEPTED

@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from gcs.gate.states import State
-from tests.loopback.bridged import Client
+from tests.loopback.bridged import Client, north_of_home, take_off
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import Mavsdk, PlanFlight, mission
-from tests.loopback.test_bridge_meaning import north_of_home, take_off
 
 ACCEPTED, TEMPORARILY_REJECTED = 0, 1
 ARM, SET_MODE, MISSION_START, REPOSITION, CONTROL = 400, 176, 300, 192, 32100

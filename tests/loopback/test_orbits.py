@@ -23,7 +23,7 @@ from gcs.gate.states import State
 from gcs.record.writer import Recorder
 from gcs.session import inputs
 from tests.loopback.boxed_stream import taken_off
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, joined
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
 from tests.loopback.observed import START_NS
 from tests.loopback.plan_clients import Mavsdk, PlanFlight, mission
@@ -47,9 +47,7 @@ TOWER = CircleSpec(3.0, (0.0, 25.0), name="tower", inclusion=False)
 
 def flying(personality: Personality, policy: Policy = DEFAULT) -> tuple[BridgedFlight, Client]:
     """Taken off by the client, hovering above home."""
-    flight = BridgedFlight(personality, policy=policy)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight(personality, policy=policy))
     taken_off(flight, client, UP_M)
     return flight, client
 
@@ -380,46 +378,6 @@ def test_one_without_room_to_stop_is_refused_and_a_slower_one_flown(
 
 
 @both
-@pytest.mark.parametrize(
-    ("circle", "result", "word"),
-    [
-        ((1.0, 2.0), UNSUPPORTED, "a circle of 1.0 m"),
-        ((2000.0, 2.0), UNSUPPORTED, "a circle of 2000.0 m"),
-        ((10.0, 0.0), UNSUPPORTED, "a speed above 0"),
-        ((10.0, -2.0), UNSUPPORTED, "a speed above 0"),
-        ((10.0, 2.0, 0.0, -1.0), UNSUPPORTED, "no negative turns"),
-        ((10.0, 2.0, 4.0), UNSUPPORTED, "the sticks turn"),
-        ((10.0, 2.0, 9.0), UNSUPPORTED, "yaw behaviour 9"),
-        ((math.inf, 2.0), DENIED, "infinite"),
-        ((10.0, math.inf), DENIED, "infinite"),
-    ],
-)
-def test_what_is_no_orbit(
-    personality: Personality, circle: tuple[float, ...], result: int, word: str
-) -> None:
-    flight, client = flying(personality)
-    assert asked(client, *circle) == result
-    assert word in client.texts()
-    assert flight.is_in(State.HOVERING)
-
-
-@both
-def test_heights_above_terrain_and_local_frames_are_refused(personality: Personality) -> None:
-    _, client = flying(personality)
-    assert asked(client, 10.0, 2.0, centre=(0.0, 0.0), up_m=UP_M, frame=10) == UNSUPPORTED
-    assert asked(client, 10.0, 2.0, centre=(0.0, 0.0), up_m=UP_M, frame=1) == UNSUPPORTED
-
-
-@both
-def test_on_the_ground_there_is_nothing_to_orbit(personality: Personality) -> None:
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
-    assert asked(client, 10.0, 2.0) == TEMPORARILY_REJECTED
-    assert "NOT_FLYING" in client.texts()
-
-
-@both
 def test_another_client_is_refused_and_changes_nothing(personality: Personality) -> None:
     flight, client = flying(personality)
     other = flight.join(246)
@@ -434,9 +392,7 @@ def test_another_client_is_refused_and_changes_nothing(personality: Personality)
 
 @both
 def test_while_a_mission_is_flown_it_is_refused_as_a_goto_is(personality: Personality) -> None:
-    flight = PlanFlight(personality)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight(personality))
     items = mission(personality, (60.0, 0.0, 10.0))
     assert Mavsdk(flight, client, items).ended() == "complete", client.texts()
     assert client.ask(ARM, 1) == ACCEPTED

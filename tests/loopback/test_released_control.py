@@ -10,11 +10,11 @@ from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.states import State
 from gcs.report import DecisionItem
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, flying, joined
 from tests.loopback.fleet import Fleet
 from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.plan_clients import NORTH_DEG
-from tests.loopback.test_bridge_streams import flying, in_control, velocity
+from tests.loopback.test_bridge_streams import in_control, velocity
 from tests.loopback.test_mission_mode_then_arm import with_mission
 from tests.loopback.test_takeoff_then_arm import commands_sent
 
@@ -164,9 +164,7 @@ def test_a_goal_is_flown_on_when_another_client_takes_over(personality: Personal
 
 
 def test_on_the_ground_nothing_is_sent_to_the_vehicle() -> None:
-    flight = BridgedFlight("px4")
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight("px4"))
     assert client.ask(CONTROL, REQUEST, 1) == ACCEPTED
     flight.beating(1.0)
     before = commands_sent(flight, SET_MODE)

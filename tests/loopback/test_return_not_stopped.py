@@ -10,17 +10,14 @@ from msgspec import structs
 from gcs.gate.condition import Condition
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
-from tests.loopback.bridged import Client
+from tests.loopback.bridged import ACCEPTED, Client, north_of_home, take_off
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import PlanFlight
 from tests.loopback.test_bridge_meaning import (
-    ACCEPTED,
     GUIDED,
     MISSION_START,
     SET_MODE,
     arrives,
-    north_of_home,
-    take_off,
 )
 from vehicle_sim.simulation.fault_script import fault_of
 

@@ -15,7 +15,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.states import State
-from tests.loopback.bridged import Client
+from tests.loopback.bridged import Client, joined
 from tests.loopback.flight import HOMES, PERSONALITIES, Personality
 from tests.loopback.plan_clients import ACCEPTED, NORTH_DEG, Mavsdk, PlanFlight, mission
 from vehicle_sim.autopilot.firmware import Firmware
@@ -49,9 +49,7 @@ def seq(personality: Personality, item: int) -> int:
 def with_square(
     personality: Personality, policy: Policy = DEFAULT, firmware: Firmware | None = None
 ) -> PlanFlight:
-    flight = PlanFlight(personality, policy=policy, firmware=firmware)
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(PlanFlight(personality, policy=policy, firmware=firmware))
     assert (
         Mavsdk(flight, client, mission(personality, *square(personality))).ended() == "complete"
     ), client.texts()

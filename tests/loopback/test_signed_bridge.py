@@ -14,7 +14,7 @@ from gcs.gate.states import State
 from gcs.record.writer import Recorder
 from gcs.wire.frame import split
 from tests.loopback import pymavlink_decoder
-from tests.loopback.bridged import BridgedFlight, Client
+from tests.loopback.bridged import BridgedFlight, Client, joined
 from tests.loopback.flight import PERSONALITIES, Flight, Personality
 from tests.loopback.observed import START_NS
 from vehicle_sim.simulation.world import Datagram
@@ -148,21 +148,6 @@ def test_what_was_recorded_before_the_bridge_began_anew_is_refused(
     assert {item.reason for item in flight.garbage() if item.link == 1} == {"too old", "unsigned"}
 
 
-@both
-def test_a_client_whose_clock_is_behind_is_brought_on_by_what_it_hears(
-    personality: Personality,
-) -> None:
-    flight = BridgedFlight(
-        personality, vehicle_key=VEHICLE_KEY, station_key=VEHICLE_KEY, client_key=CLIENT_KEY
-    )
-    client = signing(flight.join(), CLIENT_KEY)
-    client.mav.signing.timestamp -= 2_000_000
-    client.beat()
-    flight.run(1.5)
-    client.beat()
-    flown(flight, client)
-
-
 def test_the_audit_of_a_bridge_with_two_keys(monkeypatch: pytest.MonkeyPatch) -> None:
     tape = Tape()
     monkeypatch.setattr(
@@ -182,9 +167,7 @@ def test_a_key_that_a_client_sends_is_in_no_record(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(
         Flight, "new_recorder", lambda _flight: Recorder.without_file(tape, START_NS)
     )
-    flight = BridgedFlight()
-    client = flight.join()
-    flight.connected()
+    flight, client = joined(BridgedFlight())
     client.send(dialect.MAVLink_setup_signing_message(1, 1, OTHER, 12345))
     flight.run(1.0)
     kept = [m for m in tape.take() if m.topic.endswith("SETUP_SIGNING")]

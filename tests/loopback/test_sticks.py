@@ -16,7 +16,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from tests.loopback.boxed_stream import BoxedStream, box_fence, taken_off
-from tests.loopback.bridged import VEHICLE, BridgedFlight, Client
+from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, joined
 from tests.loopback.fleet import Fleet
 from tests.loopback.flight import PERSONALITIES, Personality
 from vehicle_sim.simulation.fault_script import fault_of
@@ -60,10 +60,7 @@ class Joystick(BoxedStream):
 
 
 def ready(personality: Personality, policy: Policy = POLICY) -> tuple[BridgedFlight, Client]:
-    flight = BridgedFlight(personality, policy=policy)
-    client = flight.join()
-    flight.connected()
-    return flight, client
+    return joined(BridgedFlight(personality, policy=policy))
 
 
 def flying(

@@ -8,10 +8,9 @@ import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.states import State
-from tests.loopback.bridged import VEHICLE, Client
+from tests.loopback.bridged import VEHICLE, Client, take_off
 from tests.loopback.flight import PERSONALITIES, Personality
 from tests.loopback.plan_clients import PlanFlight
-from tests.loopback.test_bridge_meaning import take_off
 
 ACCEPTED, IN_PROGRESS = 0, 5
 SET_MODE, RETURN, LAND, PAUSE_CONTINUE, MISSION_START = 176, 20, 21, 193, 300

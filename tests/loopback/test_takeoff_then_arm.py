@@ -16,7 +16,7 @@ from gcs.gate.states import State
 from gcs.record.writer import Recorder
 from gcs.session import inputs
 from tests.audits import audited, read
-from tests.loopback.bridged import BridgedFlight, Client
+from tests.loopback.bridged import BridgedFlight, Client, joined
 from tests.loopback.flight import Personality
 from tests.loopback.observed import START_NS
 
@@ -27,10 +27,7 @@ NAN = math.nan
 
 
 def standing(personality: Personality = "px4") -> tuple[BridgedFlight, Client]:
-    flight = BridgedFlight(personality)
-    client = flight.join()
-    flight.connected()
-    return flight, client
+    return joined(BridgedFlight(personality))
 
 
 def height(flight: BridgedFlight, up_m: float) -> float:

@@ -30,21 +30,8 @@ MOVES = (11, 39, 41, 69, 70, 73, 75, 76, 82, 84, 86)
 """Ids of the messages that are translated."""
 NUMBERS = (0.0, 1.0, -1.0, 0.5, 2.0, 21196.0, 47.4, 8.5, 510.0, 1e38, math.nan, math.inf)
 WORDS_OF_ASKS = frozenset(
-    [
-        "control",
-        "arm",
-        "disarm",
-        "takeoff",
-        "goto",
-        "land",
-        "rtl",
-        "hold",
-        "resume",
-        "mode",
-        "mission_start",
-        "mission_check",
-        "mission_set_current",
-    ]
+    {"control", "arm", "disarm", "takeoff", "goto", "land", "rtl", "hold", "resume", "mode"}
+    | {"mission_start", "mission_check", "mission_set_current"}
 )
 
 finite = st.floats(-1e6, 1e6)
