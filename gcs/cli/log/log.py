@@ -10,10 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gcs.cli.log.audit import audit, sign
-from gcs.cli.log.check import check
-from gcs.cli.log.export import export_log
-from gcs.cli.log.files import cannot_write
-from gcs.cli.log.import_logs import import_log
+from gcs.cli.log.import_export import cannot_write, export_log, import_log
 from gcs.cli.log.replay import replay
 from gcs.cli.log.report import report
 from gcs.cli.log.rewrite import compact, cut, merge, recover
@@ -22,6 +19,7 @@ from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
+    from gcs.record.check import CheckResult
     from gcs.record.info import FlightInfo
     from gcs.record.viewer.layout import Purpose
 
@@ -40,7 +38,6 @@ def log() -> None:
 
 for command in (
     audit,
-    check,
     compact,
     cut,
     export_log,
@@ -182,3 +179,51 @@ def _began(start_ns: int | None) -> str:
     except (OverflowError, ValueError, OSError):
         return ""
     return f", from {began:%Y-%m-%d %H:%M:%S} UTC"
+
+
+@log.command()
+@click.argument("files", type=RECORD, nargs=-1, required=True, metavar="FILE...")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a file, one a line.")
+@click.pass_context
+def check(ctx: click.Context, files: tuple[Path, ...], as_json: bool) -> None:
+    """Is each FILE whole, indexed and in order, and can every message be decoded?
+
+    The exit code is 1 where anything is wrong, and 4 where a FILE is no MCAP at all. Whether the
+    messages are those that were written is what gcs log audit tells.
+
+    Example: gcs log check logs/*.mcap
+    """
+    import msgspec
+
+    from gcs.record.check import check as check_file
+
+    good = True
+    for file in files:
+        with told(file), reading_progress(file, "checking") as progress:
+            result = check_file(file, progress)
+        good = good and result.good
+        if as_json:
+            name = result.path.encode(errors="backslashreplace").decode()
+            values = {**msgspec.to_builtins(result), "path": name, "good": result.good}
+            click.echo(msgspec.json.encode(values).decode())
+        else:
+            _print_check(result)
+    ctx.exit(ExitCode.DONE if good else ExitCode.DIFFERENT)
+
+
+def _print_check(result: CheckResult) -> None:
+    word = "good" if result.good else "NOT GOOD"
+    click.echo(
+        f"{result.path}: {word}: {result.messages} messages on {result.channels} channels, "
+        f"{result.seconds:.1f} s"
+    )
+    for finding in result.findings:
+        click.echo(f"  {finding.kind}: {finding.text}")
+    for kind, count in result.counts.items():
+        shown = sum(finding.kind == kind for finding in result.findings)
+        if count > shown:
+            click.echo(f"  {kind}: {count - shown} more")
+    if "file" in result.counts:
+        click.echo(f"  hint: gcs log recover {result.path} -o whole.mcap")
+    if result.not_decoded:
+        click.echo(f"  {result.not_decoded} messages are of encodings that are not decoded here")
