@@ -1,6 +1,6 @@
 """The report of a recorded flight: what it was, what went wrong first, as a page and as JSON.
 
-    open_flight ─▶ scan ─▶ Flight (what the flight was)      ─▶ page.html, one self-contained file
+    open_log ────▶ scan ─▶ Flight (what the flight was)      ─▶ page.html, one self-contained file
     the records     one     └ findings (what went wrong)     ─▶ JSON
     of a file       pass
 

@@ -7,9 +7,7 @@ does not grow with the length of the record.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Protocol
 
 import msgspec
 
@@ -18,8 +16,8 @@ from gcs.flight_report.flight import Fence, Flight, VehicleFlight
 from gcs.flight_report.topics import UNREADABLE, Source, source_of
 from gcs.flight_report.vehicle_scan import VehicleScan
 from gcs.gate.policy.parse import DEFAULT
-from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Record, Schema
-from gcs.mcap_file.reader import Condition, Progress, Reading
+from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Schema
+from gcs.mcap_file.reader import Condition, Progress
 from gcs.record import ros1
 from gcs.report import Direction, FenceShape
 
@@ -44,7 +42,9 @@ _decode_fence = msgspec.json.Decoder(_FenceMessage).decode
 
 def scan(path: Path, progress: Progress | None = None) -> Flight:
     """Read the whole record.  Raises BadRecordError and OSError."""
-    records = open_flight(path, progress)
+    from gcs.logfile.as_record import open_log
+
+    records = open_log(path, progress)
     scanning = Scan(Flight(path.name, records.condition.size))
     for record in records:
         match record:
@@ -184,22 +184,3 @@ def _was_received(data: bytes) -> bool:
 
 def _number(value: object, default: float) -> float:
     return float(value) if isinstance(value, int | float) else default
-
-
-class FlightRecords(Protocol):
-    """The records of a flight in file order; `condition` is whole once they have been read."""
-
-    path: Path
-    condition: Condition
-
-    def __iter__(self) -> Iterator[Record]: ...
-
-
-def open_flight(path: Path, progress: Progress | None = None) -> FlightRecords:
-    """The records of a recorded flight.
-
-    Iterating raises BadRecordError for what cannot be read.  Raises OSError.
-    """
-    from gcs.logfile.as_record import LogReading, is_other_log
-
-    return LogReading(path, progress) if is_other_log(path) else Reading(path, progress)

@@ -47,6 +47,7 @@ class LogReading:
             yield from reading
 
 
-def is_other_log(path: Path) -> bool:
-    """By its name: not a record, but a log that can be read as one."""
-    return path.suffix.lower() in SUFFIXES
+def open_log(path: Path, progress: Progress | None = None) -> Reading | LogReading:
+    """A record, or by its name a log that can be read as one.  Raises OSError."""
+    other = path.suffix.lower() in SUFFIXES
+    return LogReading(path, progress) if other else Reading(path, progress)

@@ -109,11 +109,10 @@ def records_of(path: Path) -> Iterator[Record]:
 
     Raises ExitError.
     """
-    from gcs.logfile.as_record import LogReading, is_other_log
-    from gcs.mcap_file.reader import Reading
+    from gcs.logfile.as_record import open_log
 
     with told(path):
-        records = iter(LogReading(path) if is_other_log(path) else Reading(path))
+        records = iter(open_log(path))
     while True:
         with told(path):
             record = next(records, None)
