@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import cast
+from typing import cast, get_args
 
 import msgspec
 import pytest
@@ -26,6 +26,7 @@ from gcs.record import writer
 from gcs.record.writer import Recorder
 from gcs.session.effects import Effect
 from gcs.session.inputs import (
+    TAGS,
     Datagram,
     FileRead,
     FileWritten,
@@ -430,3 +431,9 @@ def test_a_record_is_signed_and_nobody_without_the_key_alters_it(
     flown.write_bytes(data)
     assert "it was altered after it was signed" in gcs("log", "audit", flown, "--key", key).output
     assert Path(key).read_text().strip() not in signature.decode()
+
+
+def test_every_input_has_a_tag_of_its_own() -> None:
+    """So what a record calls an input outlives the names of our classes."""
+    assert set(TAGS) == set(get_args(Input))
+    assert len(set(TAGS.values())) == len(TAGS)
