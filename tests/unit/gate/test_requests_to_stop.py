@@ -44,6 +44,12 @@ stale {MOVING, FLYING_MISSION} | <hold, abort>
 NO_VEHICLE | abort    | NO_VEHICLE NONE, sends HOLD, it aborted OPERATOR, abort accepted
            | wait 3   | =, sends HOLD HOLD HOLD
            | wait 2.1 | =, sends HOLD HOLD, abort timed out NO_ANSWER
+# None of them is ever refused in flight, whether or not a request is under way.
+in {EXTERNAL, HOLDING} | {hold, abort} | HOLDING OURS, sends HOLD, $ accepted
+in {EXTERNAL, HOLDING} | land | LANDING OURS, sends LAND, land accepted
+ours; no positions; wait 1.1 | {hold, abort} | STALE OURS, sends HOLD, $ accepted
+ours; no positions; wait 1.1 | land | LANDING OURS, sends LAND, land accepted
+ours; no positions; wait 1.1 | return | STALE OURS, sends HOLD, return refused RTL_BLOCKED
 # Nothing is asked of nobody, nor of somebody who is lost.
 unheard    | <hold, abort, land, disarm> | =, <hold, abort, land, disarm> refused NO_VEHICLE
 NO_VEHICLE | <disarm, force, return>     | =, <disarm, force, return> refused NO_VEHICLE
@@ -172,7 +178,8 @@ ours; net; return-height 10; goto 20 0 1.5; wait 0.1; at 20 0 1.5; wait 1
 {AIRBORNE, STALE} | disarm | =, disarm refused IN_AIR; same
 {AIRBORNE, STALE -EXTERNAL} | force | =, force refused POLICY; same | force
     | =, force refused POLICY
-flown | force; force; force | =, force refused POLICY, force refused POLICY, force refused POLICY
+{flown, ours} | force; force; force
+    | =, force refused POLICY, force refused POLICY, force refused POLICY
 # Forced it needs the policy and a second request.
 allow_force_disarm=yes: {AIRBORNE -EXTERNAL}
     | force | =, force refused IN_AIR
@@ -183,6 +190,9 @@ allow_force_disarm=yes: STALE
     | force | =, force refused IN_AIR
     | force | EXTERNAL NONE, sends FORCE_DISARM, it superseded, force accepted; silent
     | shows disarmed | =, force complete
+allow_force_disarm=yes: {in HOLDING, ours; no positions; wait 1.1}
+    | force | =, force refused IN_AIR | force | EXTERNAL NONE, sends FORCE_DISARM, force accepted
+EXTERNAL | force | =, sends FORCE_DISARM, it superseded, force accepted
 EXTERNAL; wait 6 | force | =, force refused IN_AIR
     | force | =, sends FORCE_DISARM, force accepted | shows disarmed | GROUNDED NONE, force complete
 # Within five seconds, and not later; one without force is no first request.

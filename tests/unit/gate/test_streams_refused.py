@@ -26,7 +26,7 @@ ROWS = rows(
     | stream | =, stream refused <NO_VEHICLE, STALE, NOT_FLYING, HOLDING, NOT_IN_CONTROL>
 {FLIGHT -HOVERING} | stream | =, stream refused BUSY
 # The end of no stream changes nothing; it is not decided on a position too old.
-{STATES -STALE} | end-stream | =, end-stream accepted complete
+{STATES -STALE, in HOVERING} | end-stream | =, end-stream accepted complete
 stale HOVERING | end-stream | =, end-stream refused STALE
 # A return or landing of the vehicle's own is not in our control.
 ours; shows <RETURN, LAND> | velocity 1 0 0; stream
