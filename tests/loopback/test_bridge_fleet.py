@@ -99,18 +99,6 @@ def test_an_arming_for_all_is_judged_for_each() -> None:
     assert sorted(answered) == [(1, ACCEPTED), (2, ACCEPTED)]
 
 
-def test_a_third_system_id_is_refused() -> None:
-    flight = Fleet()
-    client = flight.all_flying()
-    sent = len(flight.sent)
-    client.command(LAND, target=(3, 1))
-    flight.run(0)
-    assert len(flight.sent) == sent
-    assert client.acks(LAND) == []
-    assert any("there is no system 3 here" in text for text in flight.told())
-    assert flight.each(lambda n: flight.state_of(n) is State.HOVERING)()
-
-
 def test_a_vehicle_that_is_not_the_target_is_shown_and_not_commanded() -> None:
     flight = Fleet(config=msgspec.structs.replace(BRIDGE, target_sysid=1))
     client = flight.join()

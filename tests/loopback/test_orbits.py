@@ -336,15 +336,6 @@ def test_one_that_leaves_the_fence_is_refused_with_the_finding(personality: Pers
 
 
 @both
-def test_one_through_an_exclusion_zone_is_refused(personality: Personality) -> None:
-    """Its far side is 25 m north, where the tower stands."""
-    policy = structs.replace(DEFAULT, fence=(FIELD, TOWER))
-    flight, client = flying(personality, policy)
-    assert asked(client, 12.5, 2.0, centre=(0.0, 12.5)) == DENIED
-    refused(flight, client, "the circle of 12.5 m about", "tower")
-
-
-@both
 def test_one_round_a_tower_is_flown(personality: Personality) -> None:
     policy = structs.replace(DEFAULT, fence=(FIELD, TOWER))
     flight, client = flying(personality, policy)
@@ -354,16 +345,6 @@ def test_one_round_a_tower_is_flown(personality: Personality) -> None:
     assert track.turned_rad > math.tau
     assert min(track.away_m) > 11.0
     assert "refused" not in client.texts()
-
-
-@both
-def test_one_beyond_an_exclusion_zone_is_refused_for_the_way_to_it(
-    personality: Personality,
-) -> None:
-    policy = structs.replace(DEFAULT, fence=(FIELD, TOWER))
-    flight, client = flying(personality, policy)
-    assert asked(client, 10.0, 2.0, centre=(0.0, 50.0)) == DENIED
-    refused(flight, client, "the leg to", "tower")
 
 
 @both
