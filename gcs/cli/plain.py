@@ -255,10 +255,7 @@ class Plain:
                 pass
 
     def _show_end(self, ended: StationEnded) -> None:
-        if ended.bye is None:
-            self._err(f"gcs: the link ended without a good-bye\n{ended.stderr_tail}".rstrip())
-            return
-        for line in event_text.bye_lines(ended.bye, simulated=self._config.simulated):
+        for line in event_text.end_lines(ended, simulated=self._config.simulated):
             self._err(line)
 
     def _exit_code(self, ended: StationEnded) -> int:

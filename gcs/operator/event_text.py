@@ -6,6 +6,7 @@ from gcs import ipc, request_words
 from gcs.enu_text import signed_enu
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
+from gcs.operator.client import StationEnded
 from gcs.operator.control_text import control_words
 from gcs.operator.errors import error_lines
 
@@ -69,6 +70,13 @@ def bye_lines(bye: ipc.Bye, *, simulated: bool = False) -> list[str]:
     if simulated:
         lines.append("gcs: the simulation has ended with it, and its vehicle")
     return [*lines, f"log: {bye.log_path}"] if bye.log_path else lines
+
+
+def end_lines(ended: StationEnded, *, simulated: bool = False) -> list[str]:
+    """The same, and that there was no good-bye, with what the process said last."""
+    if ended.bye is None:
+        return [f"gcs: the link ended without a good-bye\n{ended.stderr_tail}".rstrip()]
+    return bye_lines(ended.bye, simulated=simulated)
 
 
 def whole_degrees(yaw_deg: float) -> int:

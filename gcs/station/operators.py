@@ -15,7 +15,7 @@ from gcs.enu_text import plain_enu
 from gcs.gate import inputs as gate_inputs
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling, StreamVerdict
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import Abort, SetMode, StartMission
+from gcs.gate.requests import Abort, Request, SetMode, StartMission
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC, Autopilot
 from gcs.request_words import BadAskError, Doer, doer_of
@@ -25,7 +25,6 @@ from gcs.session.requests import FIRST, Requests, client_of, request_of
 from gcs.session.setup import Setup
 from gcs.session.speedup_waits import Times
 from gcs.session.work import (
-    AskGate,
     AskMission,
     AskOrbit,
     EndSession,
@@ -199,7 +198,7 @@ class Operators:
         if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
             # The mission mode by its name is a mission start, and is verified like one.
             return [*given, AskMission(request_id, ask)]
-        return [*given, *self.asked_of_gate(AskGate(request_id, request))]
+        return [*given, *self.ask_gate(request_id, request)]
 
     def _stream(
         self, client: int, sample: ipc.Stream, no_vehicle: Refusal | None, now_ns: int
@@ -264,7 +263,7 @@ class Operators:
             return self._refuse(request_id, ask, refusal)
         if doer_of(operation.asked.word) is Doer.TRANSFER:
             return [StopTransfer(ask.operation), *_done(request_id, "the transfer is stopped")]
-        return [AskGate(request_id, Abort())]
+        return self.ask_gate(request_id, Abort())
 
     def ask_plan(self, asked: AsksPlan, no_vehicle: Refusal | None, now_ns: int) -> list[Work]:
         """A MAVLink client brings a plan, or asks for one to be taken off."""
@@ -292,18 +291,18 @@ class Operators:
 
     # ---------------------------------------------------------------------------- answers
 
-    def asked_of_gate(self, asked: AskGate) -> list[Work]:
+    def ask_gate(self, request_id: int, request: Request) -> list[Work]:
         """The gate's input for a request, and the line that says so.
 
         The start of a mission is prepared before: whoever has lost control meanwhile starts none.
         """
-        made = self._requests.get(asked.request_id)
-        if isinstance(asked.request, StartMission):
+        made = self._requests.get(request_id)
+        if isinstance(request, StartMission):
             refusal = self._clients.refusal(made.client, made.ask)
             if refusal is not None:
-                return self._refuse(asked.request_id, made.ask, refusal)
-        given = gate_inputs.Requested(asked.request_id, made.source, asked.request)
-        return [announcements.requested(made, asked.request), GateInput(given)]
+                return self._refuse(request_id, made.ask, refusal)
+        given = gate_inputs.Requested(request_id, made.source, request)
+        return [announcements.requested(made, request), GateInput(given)]
 
     def verdict(self, told: GiveVerdict, sysid: int, now_ns: int) -> list[Work]:
         """To the operator who asked; an accepted request is an operation, which all are told."""

@@ -361,8 +361,8 @@ class Session:
                 prefix = self._vehicles.prefix(owner)
                 told = announcements.log(item, now_ns, prefix)
                 return [*told, *self._bridge.logged(item, vehicle, now_ns)]
-            case AskGate():
-                return self._operators.asked_of_gate(item)
+            case AskGate(request_id, request):
+                return self._operators.ask_gate(request_id, request)
             case AskMission():
                 return vehicle.ask_mission(item, now_ns)
             case AskOrbit():

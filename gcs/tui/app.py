@@ -107,9 +107,9 @@ class FlyApp(App[None]):
         """How it ended, once `run` has returned; waits for the station process to end."""
         self._end_within(0.0)
         talk = self.scene.talk
-        ended = talk.ended or self._connection.close()
-        talk.told(ended)
-        return SessionResult(ended, self._leaving, talk)
+        if talk.ended is None:
+            talk.told(self._connection.close())
+        return SessionResult(talk, self._leaving)
 
     @property
     def heard_vehicle(self) -> bool:

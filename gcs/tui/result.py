@@ -16,11 +16,10 @@ from gcs.operator.errors import Interrupted
 @dataclass(frozen=True, slots=True)
 class SessionResult:
     """`asked` is False if the station ended before the operator wanted to leave; `talk` is all that
-    it has told."""
+    it has told, to its end."""
 
-    ended: StationEnded
-    asked: bool
     talk: Conversation
+    asked: bool
 
 
 def until_hello(connection: Polling, interrupts: InterruptSource | None = None) -> list[ipc.Event]:
@@ -55,10 +54,8 @@ def print_result(
     """
     if not result.asked:
         raise result.talk.unexpected_end()
-    bye = result.ended.bye
-    if bye is None:
-        echo(f"gcs: the link ended without a good-bye\n{result.ended.stderr_tail}".rstrip())
-    else:
-        for line in event_text.bye_lines(bye, simulated=simulated):
-            echo(line)
-    return exit_code_of(result.ended)
+    ended = result.talk.ended
+    assert ended is not None
+    for line in event_text.end_lines(ended, simulated=simulated):
+        echo(line)
+    return exit_code_of(ended)

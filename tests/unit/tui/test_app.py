@@ -374,12 +374,13 @@ def test_the_mission_key_uploads_the_mission_of_the_command_line_and_then_starts
 def test_without_a_vehicle_it_says_what_to_do_and_leaves_when_the_time_is_over() -> None:
     async def run() -> tuple[FlyApp, ListeningStation]:
         station = ListeningStation(FakeStation("silent"))
-        app = FlyApp(station, timeout_s=0.5)
+        app = FlyApp(station, timeout_s=3.0)
         async with app.run_test() as pilot:
             await drawn(app, pilot)
             assert "start one: vehicle-sim" in screen_text(app)
             assert not any(isinstance(command, ipc.Leave) for command in station.sent)
-            await pilot.pause(1.0)
+            while not station.sent:
+                await pilot.pause(0.1)
         return app, station
 
     app, station = asyncio.run(run())
@@ -390,8 +391,11 @@ def test_without_a_vehicle_it_says_what_to_do_and_leaves_when_the_time_is_over()
 def test_a_simulated_vehicle_is_said_to_end_with_its_station() -> None:
     bye = ipc.Bye(0, "logs/x.mcap", "the vehicle is STILL FLYING in AUTO.LOITER")
     told: list[str] = []
-    ended = SessionResult(StationEnded(bye, 0, ""), asked=True, talk=Conversation())
-    assert print_result(ended, told.append, simulated=True) == ExitCode.DONE
+    talk = Conversation()
+    talk.told(StationEnded(bye, 0, ""))
+    assert (
+        print_result(SessionResult(talk, asked=True), told.append, simulated=True) == ExitCode.DONE
+    )
     assert told[1] == "gcs: the simulation has ended with it, and its vehicle"
 
 
