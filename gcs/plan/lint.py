@@ -14,11 +14,10 @@ from gcs.plan.commands import FLOWN, KINDS, Kind, item_label
 from gcs.plan.errors import Finding, Level
 from gcs.plan.feasibility import never_starts
 from gcs.plan.items import Flown, flown_as
+from gcs.plan.jumps import lint_jumps
 from gcs.plan.legs import ProblemKind
-from gcs.plan.lint_fence import lint_fence
-from gcs.plan.lint_jumps import lint_jumps
+from gcs.plan.lint_fence import distance_m, lint_fence
 from gcs.plan.model import AutopilotName, Frame, Geodetic, Geographic, Item, Local, Plan
-from gcs.plan.sphere import distance_m
 from gcs.wire.ids import Cmd
 
 FAR_M = 2_000.0

@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.verifier import Verifier
+from gcs.gate.policy.policy import BatteryLimits
 from gcs.gate.refusal import Code, Refusal
-from gcs.plan.battery_reach import battery_refusal, lasts_s
-from gcs.plan.flight_time import FlightTime, TimeWalk
+from gcs.plan.commands import item_label
+from gcs.plan.flight_time import DAY_S, FlightTime, TimeWalk
 from gcs.plan.flown import returns
 from gcs.plan.flown.path import PathWalk
 from gcs.plan.legs import FlightPath, Ground, Leg, LegKind, ProblemKind, Region
@@ -275,3 +276,54 @@ class Verifying:
             known = self._blocked.get(leg.item)
             if known is None or (refuses and not known.refuses):
                 self._blocked[leg.item] = BlockedReturn(leg.item, refusal, refuses)
+
+
+# ------------------------------------------------------------------------------ the battery
+
+_NOT_TOLD = (
+    "the vehicle has not told how much charge its battery has left, so nobody knows whether it "
+    "lasts for this mission (the policy's battery.endurance_s)"
+)
+
+
+def lasts_s(endurance_s: float, limits: BatteryLimits, battery_pct: float | None) -> float:
+    """For how long it flies before it is low; a battery of which nothing is told, as a full one."""
+    left_pct = 100.0 if battery_pct is None else battery_pct
+    return endurance_s * max(0.0, left_pct - limits.low_pct) / 100.0
+
+
+def battery_refusal(
+    flight: FlightTime, plan: Plan, limits: BatteryLimits, battery_pct: float | None
+) -> Refusal | None:
+    """None where it lasts, or where the policy does not say for how long a full one flies."""
+    if limits.endurance_s is None:
+        return None
+    if battery_pct is None:
+        return Refusal(Code.BATTERY_REACH, _NOT_TOLD)
+    most_s = lasts_s(limits.endurance_s, limits, battery_pct)
+    if flight.whole and flight.time_s <= most_s:
+        return None
+    sentence = (
+        f"{_what(flight, plan)}; the battery is low after {most_s:.0f} s: {battery_pct:.0f} % are "
+        f"left of {limits.endurance_s:g} s, and {limits.low_pct:g} % are kept"
+    )
+    numbers = (
+        ("flight_s", flight.time_s),
+        ("battery_lasts_s", most_s),
+        ("battery_pct", battery_pct),
+    )
+    return Refusal(Code.BATTERY_REACH, sentence, numbers)
+
+
+def _what(flight: FlightTime, plan: Plan) -> str:
+    time = "a day or more" if flight.time_s >= DAY_S else f"about {flight.time_s:.0f} s"
+    if flight.whole:
+        return f"the mission, its return and landing included, takes {time}"
+    done = f"{_named(plan, flight.item)} is done only after {time}"
+    if flight.endless is None:
+        return done
+    return f"{_named(plan, flight.endless)} repeats for ever, and {done}"
+
+
+def _named(plan: Plan, index: int) -> str:
+    return item_label(index, plan.items[index].command)

@@ -9,7 +9,7 @@ from typing import Final
 
 from gcs.gate import inputs
 from gcs.gate.effects import Level
-from gcs.gate.machine.could_arm import why_not_arm
+from gcs.gate.machine.could import why_not_arm
 from gcs.protocol import arm_authorizer
 from gcs.protocol.autopilot import autopilot_of
 from gcs.protocol.effects import Address, Heard, Send

@@ -13,7 +13,7 @@ from gcs.config import StationConfig
 from gcs.frames import Vec3
 from gcs.gate import effects, inputs
 from gcs.gate.condition import Condition
-from gcs.gate.machine.could_resume import why_not_go_to, why_not_resume
+from gcs.gate.machine.could import why_not_go_to, why_not_resume
 from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal

@@ -8,7 +8,7 @@ import pytest
 
 from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged
-from gcs.gate.machine.could_resume import why_not_resume
+from gcs.gate.machine.could import why_not_resume
 from gcs.gate.refusal import Code
 from gcs.gate.requests import Hold, Resume
 from gcs.gate.states import State

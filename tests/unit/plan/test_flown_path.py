@@ -19,6 +19,7 @@ from gcs.plan.commands import KINDS, WITH_PLACE
 from gcs.plan.flown.circles import circle_ends, entries, first_arc, way_on
 from gcs.plan.flown.curves import Neighbours, Onward, pieces, splines
 from gcs.plan.flown.path import flight_path
+from gcs.plan.flown.returns import landing_places
 from gcs.plan.flown.turns import blend, turning_places
 from gcs.plan.items import ROWS, Flown, flown_as
 from gcs.plan.legs import FlightPath, FlightSettings, Ground, LandingPlace, RegionKind
@@ -377,6 +378,17 @@ def test_a_rally_point_in_a_zone_is_refused_by_its_name(autopilot: AutopilotName
     assert refused(checked(outside, mast(-40.0, 0.0), item(16, 20, 0))).code is Code.OUTSIDE_FENCE
 
 
+def test_a_rally_point_is_refused_where_only_the_beginning_of_the_way_down_is_too_near() -> None:
+    """It is reached 30 m up, 0.2 m below the crane: a leg that leads away from there is clear."""
+    crane = CircleSpec(
+        radius_m=5.0, centre=(0.0, -40.0), name="crane", inclusion=False, floor_up_m=30.2
+    )
+    on = ground(rally=(rally_point(-40.0, 0.0),))
+    refusal = refused(checked(on, crane, item(16, 20, 0)))
+    assert refusal.sentence.startswith("rally point 1: waypoint (0.00 E, -40.00 N, 30.00 U)")
+    assert refusal.zone == "crane"
+
+
 @pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
 def test_a_return_through_a_zone_to_the_nearest_rally_point_is_refused(
     autopilot: AutopilotName,
@@ -396,6 +408,16 @@ def test_px4_returns_to_the_nearest_of_home_and_the_rally_points() -> None:
     assert near_home.legs[-1].to_ned == HOME
     near_rally = path(on, item(16, 90, 40), BACK)
     assert near_rally.legs[-1].to_ned == (100.0, 50.0, 0.0)
+
+
+@pytest.mark.parametrize(("east", "ends"), [(140.0, ["home", "rally point 1"]), (400.0, ["home"])])
+def test_a_return_may_end_at_what_is_nearest_to_any_of_its_places(
+    east: float, ends: list[str]
+) -> None:
+    """The third place is far from the middle of the three, and nearer to the rally point."""
+    places = tuple((0.0, place, -10.0) for place in (0.0, 10.0, 100.0))
+    found = landing_places(ground(rally=(rally_point(0.0, east),)), places)
+    assert [each.name for each in found] == ends
 
 
 def test_a_failsafe_return_to_a_rally_point_through_a_zone_refuses_the_mission() -> None:

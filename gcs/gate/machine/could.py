@@ -1,5 +1,7 @@
-"""Whether the gate would give control of the vehicle back once it is held, and fly it to a goal
-from there: asked before anything is stopped, or a hold is lifted."""
+"""Whether the gate would do what may be asked for: arm the vehicle now; give control of it back
+once it is held, and fly it to a goal from there.  Asked before anything is stopped, or a hold is
+lifted.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +11,34 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.questions.back_inside import WayBack
 from gcs.gate.machine.checks import Check
 from gcs.gate.machine.memory import Memory
+from gcs.gate.machine.rows.requests_to_fly import arm
 from gcs.gate.machine.sentences import REFUSED, no_fresh_position
 from gcs.gate.machine.turn import Turn
 from gcs.gate.machine.verifying import home_or_fence_unknown
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
+from gcs.gate.states import State
 
 AT_REST: Final[Vec3] = (0.0, 0.0, 0.0)
+
+
+def why_not_arm(policy: Policy, memory: Memory, now_ns: int) -> Refusal | None:
+    """The refusal that a request to arm would get; None where it would be carried out.
+
+    Asks the checks of the table's own row, and changes nothing.
+    """
+    turn = Turn(policy, memory, now_ns)
+    if memory.state is State.STALE or turn.stale:
+        return Refusal(Code.STALE, "the vehicle's position is too old")
+    if memory.state is not State.GROUNDED:
+        return Refusal(
+            Code.ALREADY_FLYING, f"the vehicle is not on the ground: {memory.state.name}"
+        )
+    for check in arm.needs:
+        refusal = check.refusal(turn)
+        if refusal is not None:
+            return refusal
+    return None
 
 
 def why_not_resume(policy: Policy, memory: Memory, now_ns: int) -> Refusal | None:
