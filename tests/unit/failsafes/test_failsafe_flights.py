@@ -71,6 +71,24 @@ def test_px4_waits_com_fail_act_t_before_it_acts() -> None:
     assert flight.vehicle.mode_name == "AUTO.RTL"
 
 
+def test_px4s_wait_comes_back_in_four_times_the_time_that_it_lasted() -> None:
+    """3.6 s after it was used up 0.9 s are there for the next failsafe, of 2 s."""
+    flight = aloft("px4", NAV_DLL_ACT=2, COM_FAIL_ACT_T=2.0)
+    silence(flight, 11)
+    assert said(flight, "in 2 seconds")
+    flight.vehicle.gcs_heard(112 * S)
+    flight.fly(2.0)
+    assert flight.vehicle.mode_name == "AUTO.RTL"
+    assert flight.vehicle.set_mode_kind("hold") is Result.ACCEPTED
+    flight.fly(3.0)
+    silence(flight, 11)
+    assert said(flight, "in 1 seconds")
+    flight.fly(0.6)
+    assert flight.vehicle.mode_name == "AUTO.LOITER"
+    flight.fly(0.4)
+    assert flight.vehicle.mode_name == "AUTO.RTL"
+
+
 def test_px4_that_took_off_with_a_low_battery_has_decided_so() -> None:
     flight = Flight("px4").boot()
     flight.vehicle.parameters.set("COM_LOW_BAT_ACT", 2)
