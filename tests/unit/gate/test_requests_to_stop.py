@@ -100,6 +100,8 @@ climb; refuses TAKE_OFF; disarm
     | abort | GROUNDED NONE, sends HOLD DISARM, disarm aborted OPERATOR, abort accepted
 # A landing is commanded there.
 climb; refuses TAKE_OFF; disarm | land | LANDING OURS, sends LAND, disarm superseded, land accepted
+# Disarmed it takes off no more.
+climb; refuses TAKE_OFF; shows disarmed | <land, return> | =, <land, return> accepted complete
 # A blocked return of what may fly is treated as in flight.
 rtl_blocked=<hold, land>: climb; refuses TAKE_OFF; disarm; return-height 80
     | return | <HOLDING, LANDING> OURS, sends <HOLD, LAND>,
@@ -138,6 +140,9 @@ climb; no positions; wait 1.2 | hold | STALE OURS, sends HOLD, it aborted OPERAT
 climb; no positions; wait 1.2 | land | LANDING OURS, sends LAND, it superseded, land accepted
 climb; no positions; wait 1.2
     | return | STALE OURS, sends HOLD, it aborted OPERATOR, return refused RTL_BLOCKED
+# So it is when the take-off can come late no more: it is under way as long as it is not given up.
+climb; wait 12; no positions; wait 1.2
+    | land | LANDING OURS, sends LAND, it superseded, land accepted
 
 # Disarmed by one message and in the air by another, with no position yet: it is not known to stand.
 unheard; shows disarmed; is IN_AIR | disarm | STALE NONE, disarm refused IN_AIR
