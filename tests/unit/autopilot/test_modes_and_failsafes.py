@@ -237,65 +237,6 @@ def test_a_series_of_pictures_keeps_its_interval_and_can_be_stopped() -> None:
     assert flight.vehicle.images_captured == 5
 
 
-@either
-def test_a_silent_station_is_nobodys_business_by_default(personality: Personality) -> None:
-    flight = Flight.hovering(personality, 5.0)
-    flight.vehicle.gcs_heard(flight.vehicle.time_ns)
-    mode = flight.vehicle.mode_name
-    flight.fly(30.0)
-    assert flight.vehicle.mode_name == mode
-
-
-@pytest.mark.parametrize(
-    ("personality", "name", "value", "mode"),
-    [
-        ("px4", "NAV_DLL_ACT", 1, "AUTO.LOITER"),
-        ("px4", "NAV_DLL_ACT", 2, "AUTO.RTL"),
-        ("px4", "NAV_DLL_ACT", 3, "AUTO.LAND"),
-        ("ardupilot", "FS_GCS_ENABLE", 1, "RTL"),
-        ("ardupilot", "FS_GCS_ENABLE", 5, "LAND"),
-    ],
-)
-def test_a_silent_station_does_what_the_parameter_says_on_wall_time(
-    personality: Personality, name: str, value: int, mode: str
-) -> None:
-    flight = Flight.hovering(personality, 5.0)
-    flight.vehicle.parameters.set(name, value)
-    if personality == "px4":
-        flight.vehicle.parameters.set("COM_FAIL_ACT_T", 0.0)
-    flight.vehicle.wall(100 * S)
-    flight.vehicle.gcs_heard(100 * S)
-    flight.fly(20.0)
-    assert flight.vehicle.system_status == 4
-    flight.vehicle.wall(111 * S)
-    flight.fly(0.2)
-    assert flight.vehicle.mode_name == mode
-    assert flight.vehicle.system_status == 5
-    words = "GCS connection loss" if personality == "px4" else "GCS Failsafe"
-    assert any(words in text for text in flight.texts())
-
-
-@pytest.mark.parametrize(
-    ("personality", "name", "value", "left", "mode"),
-    [
-        ("px4", "COM_LOW_BAT_ACT", 0, 0.06, "AUTO.LOITER"),
-        ("px4", "COM_LOW_BAT_ACT", 3, 0.06, "AUTO.RTL"),
-        ("px4", "COM_LOW_BAT_ACT", 2, 0.06, "AUTO.LAND"),
-        ("px4", "COM_LOW_BAT_ACT", 3, 0.04, "AUTO.LAND"),
-    ],
-)
-def test_an_empty_battery_does_what_the_parameter_says(
-    personality: Personality, name: str, value: int, left: float, mode: str
-) -> None:
-    flight = Flight.hovering(personality, 5.0)
-    flight.vehicle.parameters.set("COM_FAIL_ACT_T", 0.0)
-    flight.vehicle.parameters.set(name, value)
-    flight.vehicle.blocks.body.consumed_mah = 5000.0 * (1.0 - left)
-    flight.fly(0.3)
-    assert flight.vehicle.mode_name == mode
-    assert any("battery level" in text for text in flight.texts())
-
-
 def test_flying_empties_the_battery_at_a_believable_rate() -> None:
     flight = Flight.hovering("px4", 5.0)
     before = flight.vehicle.power.consumed_mah

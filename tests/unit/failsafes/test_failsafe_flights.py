@@ -14,7 +14,7 @@ from vehicle_sim.autopilot.modes import Personality
 BOTH: tuple[Personality, ...] = ("px4", "ardupilot")
 either = pytest.mark.parametrize("personality", BOTH)
 S = 1_000_000_000
-CRITICAL, EMERGENCY = 5, 6
+ACTIVE, CRITICAL, EMERGENCY = 4, 5, 6
 
 
 def aloft(personality: Personality, up_m: float = 5.0, **parameters: float) -> Flight:
@@ -169,10 +169,13 @@ def silence(flight: Flight, seconds: int) -> None:
 )
 def test_px4_without_its_ground_station(action: int, mode: str) -> None:
     flight = aloft("px4", NAV_DLL_ACT=action, COM_FAIL_ACT_T=0.0)
+    assert flight.vehicle.system_status == ACTIVE
     silence(flight, 9)
-    assert not said(flight, "lost")
+    flight.fly(11.0)
+    assert not said(flight, "lost"), "wall time counts"
     silence(flight, 11)
     assert said(flight, "Connection to ground station lost")
+    assert said(flight, "GCS connection loss") == (action > 0)
     assert flight.vehicle.mode_name == mode
     assert (flight.vehicle.system_status == CRITICAL) == (action > 0)
     flight.vehicle.gcs_heard(112 * S)
@@ -197,6 +200,7 @@ def test_ardupilot_without_its_ground_station(action: int, mode: str) -> None:
     silence(flight, 6)
     assert flight.vehicle.mode_name == mode
     assert said(flight, "GCS Failsafe") == (action > 0)
+    assert (flight.vehicle.system_status == CRITICAL) == (action > 0)
     flight.vehicle.gcs_heard(107 * S)
     flight.fly(0.1)
     assert said(flight, "GCS Failsafe Cleared") == (action > 0)

@@ -12,9 +12,8 @@ from collections.abc import Callable, Mapping
 from copy import deepcopy
 from functools import cache
 from math import cos, hypot, nan, radians
-from typing import TypeVar
 
-from tests.unit.vehicle_services.fake_vehicle import long
+from tests.unit.vehicle_services.fake_vehicle import NUMBERS, Kind, long
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.interface import Geodetic, Truth
 from vehicle_sim.autopilot.modes import Personality
@@ -45,10 +44,6 @@ PEER = "ground"
 BEAT = m.Heartbeat(0, 6, 8, 0, 4, 3)
 ARM, TAKE_OFF, SET_MODE, INJECT = 400, 22, 176, 420
 GUIDED = 4
-
-NUMBERS: dict[object, int] = {kind: number for kind, number in m.IDS.items()}  # noqa: C416
-
-M = TypeVar("M", bound=m.Message)
 
 # A stage can be copied in flight; hashlib's objects are copied by a method of their own.
 copyreg.pickle(type(hashlib.sha256()), lambda digest: (digest.copy, ()))
@@ -210,7 +205,7 @@ class Stage:
     def said(self, part: str) -> bool:
         return any(part in text for text in self.texts)
 
-    def all(self, kind: type[M], since_ns: int = 0) -> list[M]:
+    def all(self, kind: type[Kind], since_ns: int = 0) -> list[Kind]:
         number = NUMBERS[kind]
         return [
             message
@@ -220,7 +215,7 @@ class Stage:
             and isinstance(message := frame.message(), kind)
         ]
 
-    def last(self, kind: type[M]) -> M:
+    def last(self, kind: type[Kind]) -> Kind:
         number = NUMBERS[kind]
         message = next(frame for _, frame in reversed(self.heard) if frame.number == number)
         found = message.message()

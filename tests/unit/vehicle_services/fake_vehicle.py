@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from inspect import isfunction, signature
-from typing import Any
+from typing import Any, TypeVar
 
 from vehicle_sim.autopilot.boot import READY
 from vehicle_sim.autopilot.fence import rally
@@ -63,6 +63,10 @@ HEALTHY = Health(
 )
 MS = 1_000_000
 S = 1000 * MS
+
+Kind = TypeVar("Kind", bound=m.Message)
+NUMBERS: dict[object, int] = {kind: number for kind, number in m.IDS.items()}  # noqa: C416
+"""As `m.IDS`, for a kind that is given."""
 
 
 class FakeVehicle:
@@ -306,6 +310,11 @@ class Bench:
                 heard += [known for frame in frames if (known := frame.message()) is not None]
         assert counters == Counters(frames=counters.frames)
         return heard
+
+
+def of(heard: list[m.Message], kind: type[Kind]) -> list[Kind]:
+    """The messages of one kind."""
+    return [each for each in heard if isinstance(each, kind)]
 
 
 def acks(heard: list[m.Message]) -> list[tuple[int, int]]:

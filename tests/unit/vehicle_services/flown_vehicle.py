@@ -8,7 +8,7 @@ from copy import deepcopy
 from fractions import Fraction
 from functools import cache
 
-from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S, acks, long, of
 from vehicle_sim.autopilot.autopilot import Autopilot
 from vehicle_sim.autopilot.boot import Boot
 from vehicle_sim.autopilot.interface import Geodetic, Result
@@ -57,9 +57,7 @@ class Flown(Bench):
         return found[0] if found else None
 
     def texts(self, heard: list[m.Message]) -> list[str]:
-        return [
-            each.text.rstrip(b"\0").decode() for each in heard if isinstance(each, m.Statustext)
-        ]
+        return [each.text.rstrip(b"\0").decode() for each in of(heard, m.Statustext)]
 
     @property
     def mode_name(self) -> str:

@@ -6,11 +6,9 @@ Rows: `behaviour.json` "armable" and "SYS_STATUS bits"; `px4_1_14_flight.tlog` a
 
 from __future__ import annotations
 
-from typing import TypeVar
-
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import MS, S, long
+from tests.unit.vehicle_services.fake_vehicle import MS, S, long, of
 from tests.unit.vehicle_services.flown_vehicle import Flown
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
@@ -18,8 +16,6 @@ from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import Cmd, DataStream, Sensor
 
 pytestmark = pytest.mark.slow  # a vehicle flies
-
-Kind = TypeVar("Kind")
 
 
 def booting(personality: Personality) -> Flown:
@@ -37,10 +33,6 @@ def first_s(bench: Flown, kind: type[m.Message], limit_s: int = 60) -> float:
         if any(isinstance(each, kind) for each in bench.advance(100 * MS)):
             return bench.now_ns / 1e9
     raise AssertionError(f"no {kind.__name__} within {limit_s} s")
-
-
-def last(messages: list[m.Message], kind: type[Kind]) -> Kind:
-    return [each for each in messages if isinstance(each, kind)][-1]
 
 
 @pytest.mark.parametrize(
@@ -84,7 +76,7 @@ def test_px4s_sys_status(at_s: float, present: int, enabled: int, healthy: int) 
     PREARM_CHECK is left out of the first two: it is told as present here, on purpose.
     """
     bench = booting("px4")
-    told = last(bench.advance(int(at_s * S)), m.SysStatus)
+    told = of(bench.advance(int(at_s * S)), m.SysStatus)[-1]
     known = ~int(Sensor.PREARM_CHECK)
     assert told.onboard_control_sensors_present & known == present
     assert told.onboard_control_sensors_enabled & known == enabled
@@ -98,7 +90,7 @@ def test_arducopters_sys_status_says_healthy_in_stabilize_and_not_in_guided() ->
 
     def healthy(until_s: float) -> bool:
         heard = bench.advance(int(until_s * S) - bench.now_ns)
-        told = last(heard, m.SysStatus)
+        told = of(heard, m.SysStatus)[-1]
         return bool(told.onboard_control_sensors_health & Sensor.PREARM_CHECK)
 
     assert not healthy(22.5)
@@ -129,12 +121,12 @@ def test_the_ack_of_arm(personality: Personality, at_s: float, result: Result) -
 def test_estimator_status_of_px4() -> None:
     """The flight: flags 164 at 2.1 s; with a position all that it tells here."""
     bench = booting("px4")
-    assert last(bench.advance(3 * S), m.EstimatorStatus).flags == 164
-    assert last(bench.advance(7 * S), m.EstimatorStatus).flags & 0x1F == 0x1F
+    assert of(bench.advance(3 * S), m.EstimatorStatus)[-1].flags == 164
+    assert of(bench.advance(7 * S), m.EstimatorStatus)[-1].flags & 0x1F == 0x1F
 
 
 def test_gps_raw_int_of_arducopter() -> None:
     """`boot_to_ready`: no receiver before 9.8 s."""
     bench = booting("ardupilot")
-    assert last(bench.advance(9 * S), m.GpsRawInt).fix_type == 0
-    assert last(bench.advance(2 * S), m.GpsRawInt).fix_type == 3
+    assert of(bench.advance(9 * S), m.GpsRawInt)[-1].fix_type == 0
+    assert of(bench.advance(2 * S), m.GpsRawInt)[-1].fix_type == 3

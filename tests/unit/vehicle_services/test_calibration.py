@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import MS, S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import MS, S, acks, long, of
 from tests.unit.vehicle_services.flown_vehicle import Flown, in_the_air, on_the_ground
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.plant.faults import GyroBias
@@ -177,7 +177,7 @@ def test_ardupilots_compass_calibration_is_started_and_cancelled() -> None:
 
 
 def positions(heard: list[m.Message]) -> list[float]:
-    return [each.param1 for each in heard if isinstance(each, m.CommandLong)]
+    return [each.param1 for each in of(heard, m.CommandLong)]
 
 
 def test_ardupilot_asks_for_sides_and_fails_as_the_vehicle_is_not_turned() -> None:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import HOME, MS, Bench, S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import HOME, MS, Bench, S, acks, long, of
 from vehicle_sim.autopilot.interface import CommandDone, Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
@@ -22,7 +22,7 @@ def command_int(command: int, frame: int, x: int = 0, y: int = 0, z: float = 0.0
 def test_an_ack_goes_to_the_sender() -> None:
     bench = Bench()
     heard = bench.send(long(Cmd.COMPONENT_ARM_DISARM, 1), system=245, component=190)
-    (ack,) = [each for each in heard if isinstance(each, m.CommandAck)]
+    (ack,) = of(heard, m.CommandAck)
     assert (ack.result, ack.target_system, ack.target_component) == (0, 245, 190)
     assert bench.vehicle.named("arm") == [(False,)]
 
@@ -245,14 +245,6 @@ def test_the_version_comes_after_its_ack_with_true_capabilities() -> None:
         assert version.capabilities & 0x20, "file transfer"
 
 
-def test_every_mode_is_told_and_counted() -> None:
-    heard = Bench("ardupilot").send(long(Cmd.REQUEST_MESSAGE, 435, 0))
-    modes = [each for each in heard if isinstance(each, m.AvailableModes)]
-    assert [mode.mode_index for mode in modes] == list(range(1, len(modes) + 1))
-    assert {mode.number_modes for mode in modes} == {len(modes)}
-    assert b"GUIDED" in {mode.mode_name.rstrip(b"\0") for mode in modes}
-
-
 @pytest.mark.parametrize(
     ("personality", "unknown", "too_early"),
     [("px4", Result.DENIED, Result.DENIED), ("ardupilot", Result.FAILED, Result.ACCEPTED)],
@@ -271,11 +263,11 @@ def test_a_message_that_there_is_not_and_one_too_early(
 def test_capabilities(personality: Personality, told: int) -> None:
     """autopilots.md, "Real beside ours" 3."""
     heard = Bench(personality).send(long(Cmd.REQUEST_MESSAGE, 148))
-    (version,) = [each for each in heard if isinstance(each, m.AutopilotVersion)]
+    (version,) = of(heard, m.AutopilotVersion)
     assert version.capabilities == told
 
 
 def test_home_is_told_when_asked() -> None:
     heard = Bench().send(long(Cmd.GET_HOME_POSITION))
-    home = [each for each in heard if isinstance(each, m.HomePosition)][-1]
+    home = of(heard, m.HomePosition)[-1]
     assert (home.latitude, home.longitude, home.altitude) == (473977420, 85455940, 488000)

@@ -10,7 +10,7 @@ from typing import Final
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import HEALTHY, Bench, S, long
+from tests.unit.vehicle_services.fake_vehicle import HEALTHY, Bench, S, long, of
 from vehicle_sim.autopilot.interface import FenceState, StatusText
 from vehicle_sim.services.events.events import FIRST_SEQUENCE, KEPT
 from vehicle_sim.services.events.health_report import Checked, report
@@ -25,7 +25,7 @@ OFFBOARD_MODE, LOITER, POSCTL = 0x60000, 0x3040000, 0x30000
 
 
 def events(heard: list[m.Message]) -> list[m.Event]:
-    return [each for each in heard if isinstance(each, m.Event)]
+    return of(heard, m.Event)
 
 
 def told(event: m.Event) -> tuple[int, int, str]:
@@ -256,7 +256,7 @@ def test_an_event_stands_beside_the_text() -> None:
     bench.send(GROUND)
     bench.vehicle.pending.append(StatusText(6, "Armed by external command"))
     heard = bench.advance(S)
-    texts = [each.text.rstrip(b"\0") for each in heard if isinstance(each, m.Statustext)]
+    texts = [each.text.rstrip(b"\0") for each in of(heard, m.Statustext)]
     assert texts == [b"Armed by external command\t"]
     assert [told(event) for event in events(heard)] == [(26266355, 0x66, "04")]
 
@@ -274,20 +274,20 @@ def test_events_can_be_asked_for_again_and_what_is_gone_is_said_so() -> None:
     ]
     oldest = sent[3].sequence
     heard = bench.send(m.RequestEvent(sent[1].sequence, sent[4].sequence, 1, 1))
-    errors = [each for each in heard if isinstance(each, m.ResponseEventError)]
+    errors = of(heard, m.ResponseEventError)
     assert errors == [
         m.ResponseEventError(sent[1].sequence, oldest, 255, 190, 0),
         m.ResponseEventError(sent[2].sequence, oldest, 255, 190, 0),
     ]
     assert events(heard) == sent[3:5]
     heard = bench.send(m.RequestEvent(0, 65535, 1, 1))
-    assert len([each for each in heard if isinstance(each, m.ResponseEventError)]) <= 256
+    assert len(of(heard, m.ResponseEventError)) <= 256
 
 
 def test_the_last_sequence_is_told_every_three_seconds() -> None:
     bench = Bench()
     bench.send(GROUND)
-    heard = [each for each in bench.advance(30 * S) if isinstance(each, m.CurrentEventSequence)]
+    heard = of(bench.advance(30 * S), m.CurrentEventSequence)
     assert len(heard) == 10
     assert heard[0] == m.CurrentEventSequence(65530, 0)
 
@@ -296,7 +296,7 @@ def test_the_last_sequence_is_told_every_three_seconds() -> None:
 def test_the_interfaces_messages_are_not_to_be_requested(number: int) -> None:
     """K1_small_services: REQUEST_MESSAGE 410 to 413 DENIED."""
     heard = Bench().send(long(Cmd.REQUEST_MESSAGE, number))
-    assert [each.result for each in heard if isinstance(each, m.CommandAck)] == [2]
+    assert [each.result for each in of(heard, m.CommandAck)] == [2]
 
 
 def test_ardupilot_and_a_fleet_of_positions_have_no_events() -> None:

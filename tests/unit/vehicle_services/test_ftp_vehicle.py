@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from tests.unit.vehicle_services.fake_vehicle import Bench, S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import Bench, S, acks, long, of
 from tests.unit.vehicle_services.ftp_client import frame, refused, understood
 from vehicle_sim.services.ftp.wire import Nak, Opcode
 from vehicle_sim.wire import messages as m
 
 
 def ftp_replies(heard: list[m.Message]) -> list[m.FileTransferProtocol]:
-    return [each for each in heard if isinstance(each, m.FileTransferProtocol)]
+    return of(heard, m.FileTransferProtocol)
 
 
 def test_a_vehicle_serves_files_and_says_that_it_does() -> None:
     bench = Bench("ardupilot")
-    (version,) = [
-        each for each in bench.send(long(512, 148)) if isinstance(each, m.AutopilotVersion)
-    ]
+    (version,) = of(bench.send(long(512, 148)), m.AutopilotVersion)
     assert version.capabilities & 0x20  # MAV_PROTOCOL_CAPABILITY_FTP
     (told,) = ftp_replies(bench.send(frame(Opcode.OPEN_FILE_RO, b"@PARAM/param.pck")))
     assert (told.target_system, told.target_component) == (255, 190)
@@ -39,7 +37,7 @@ def test_files_for_another_vehicle_are_not_served() -> None:
 def test_only_px4_knows_component_metadata() -> None:
     bench = Bench("px4")
     heard = bench.send(long(512, 397))
-    (told,) = [each for each in heard if isinstance(each, m.ComponentMetadata)]
+    (told,) = of(heard, m.ComponentMetadata)
     uri = told.uri.rstrip(b"\0")
     assert uri == b"mftp://etc/extras/component_general.json"
     (summed,) = ftp_replies(bench.send(frame(Opcode.CALC_FILE_CRC32, uri.removeprefix(b"mftp://"))))

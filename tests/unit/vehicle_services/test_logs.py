@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.unit.vehicle_services.fake_vehicle import MS, Bench, FakeVehicle, S
+from tests.unit.vehicle_services.fake_vehicle import MS, Bench, FakeVehicle, S, of
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.autopilot.parameters.parameters import Parameters
 from vehicle_sim.effects import Client, Effect, Send
@@ -47,7 +47,7 @@ class Aboard:
 
     def listed(self, start: int = 0, end: int = 0xFFFF, channel: int = 0) -> list[m.LogEntry]:
         told = self.ask(m.LogRequestList(start, end, 1, 1), channel)
-        return [each for each in told if isinstance(each, m.LogEntry)]
+        return of(told, m.LogEntry)
 
     def data(
         self, number: int, offset: int = 0, count: int = ALL, channel: int = 0
@@ -80,7 +80,7 @@ def sent(effects: list[Effect], channel: int) -> list[m.Message]:
 
 
 def datas(heard: list[m.Message]) -> list[m.LogData]:
-    return [each for each in heard if isinstance(each, m.LogData)]
+    return of(heard, m.LogData)
 
 
 def joined(frames: list[m.LogData]) -> bytes:
@@ -370,25 +370,6 @@ def test_no_requests_upset_it(
     for channel in range(3):
         aboard.server.forget(channel)
     assert aboard.server.deadline_ns == NEVER
-
-
-@BOTH
-def test_a_flight_is_listed_downloaded_and_erased_over_the_wire(personality: Personality) -> None:
-    bench = Bench(personality)
-    bench.send(m.Heartbeat(0, 6, 8, 0, 4, 3))
-    bench.vehicle.armed = True
-    bench.advance(3 * S)
-    bench.vehicle.armed = False
-    bench.advance(1 * S)
-    (entry,) = [e for e in bench.send(m.LogRequestList(0, 0xFFFF, 1, 1)) if is_entry(e)]
-    assert isinstance(entry, m.LogEntry)
-    heard = bench.send(m.LogRequestData(0, ALL, entry.id, 1, 1)) + bench.advance(1 * S)
-    log = b"".join(frame.data[: frame.count_] for frame in datas(heard))
-    assert len(log) == entry.size
-    assert log.startswith(b"ULog\x01\x12\x35" if personality == "px4" else b"\xa3\x95\x80")
-    bench.send(m.LogErase(1, 1))
-    (entry,) = [e for e in bench.send(m.LogRequestList(0, 0xFFFF, 1, 1)) if is_entry(e)]
-    assert entry == m.LogEntry(0, 0, 0, 0, 0)
 
 
 def test_the_vehicle_knows_of_a_download_until_it_has_ended() -> None:

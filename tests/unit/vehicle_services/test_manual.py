@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import HOME, Bench, S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import HOME, NUMBERS, Bench, Kind, S, acks, long, of
 from vehicle_sim.autopilot.interface import AttitudeGoal, Geodetic, Orbiting, OrbitRequest, Result
 from vehicle_sim.autopilot.modes import MODES, Personality, Property
 from vehicle_sim.wire import messages as m
@@ -167,9 +167,8 @@ def test_parameters_are_stored_and_reset_when_asked() -> None:
 # ------------------------------------------------------------------------------- being told
 
 
-def asked_for(bench: Bench, kind: type[m.Message]) -> list[m.Message]:
-    heard = bench.send(long(Cmd.REQUEST_MESSAGE, m.IDS[kind]))
-    return [each for each in heard if isinstance(each, kind)]
+def asked_for(bench: Bench, kind: type[Kind]) -> list[Kind]:
+    return of(bench.send(long(Cmd.REQUEST_MESSAGE, NUMBERS[kind])), kind)
 
 
 def test_an_orbit_is_told_while_it_is_flown() -> None:
@@ -177,7 +176,7 @@ def test_an_orbit_is_told_while_it_is_flown() -> None:
     assert asked_for(bench, m.OrbitExecutionStatus) == []
     bench.vehicle.orbiting = Orbiting((0.0, 0.0, -10.0), -7.5)
     heard = bench.advance(S)
-    told = [each for each in heard if isinstance(each, m.OrbitExecutionStatus)]
+    told = of(heard, m.OrbitExecutionStatus)
     assert len(told) >= 4
     assert told[-1].radius == -7.5
     assert (told[-1].x, told[-1].y) == pytest.approx((473977420, 85455940), abs=2)
@@ -190,7 +189,6 @@ def test_radio_channels_are_told(personality: Personality) -> None:
     silent = asked_for(bench, m.RcChannels)
     bench.vehicle.channels_us = (1500, 0, 1700, *[0] * 15)
     (told,) = asked_for(bench, m.RcChannels)
-    assert isinstance(told, m.RcChannels)
     assert (told.chan1_raw, told.chan3_raw, told.chancount) == (1500, 1700, 3)
     # PX4 is silent without a radio and marks an unused channel; ArduPilot tells of nothing.
     if personality == "px4":
@@ -198,7 +196,6 @@ def test_radio_channels_are_told(personality: Personality) -> None:
         assert told.chan2_raw == 65535
     else:
         (nothing,) = silent
-        assert isinstance(nothing, m.RcChannels)
         assert nothing.chancount == told.chan2_raw == 0
 
 
@@ -207,7 +204,6 @@ def test_px4_tells_the_sticks_that_it_flies_by() -> None:
     assert asked_for(bench, m.ManualControl) == []
     bench.vehicle.sticks = (0.1, -0.2, 0.3, 0.5)
     (told,) = asked_for(bench, m.ManualControl)
-    assert isinstance(told, m.ManualControl)
     assert (told.x, told.y, told.z, told.r) == (-200, 100, 500, 300)
 
 
@@ -216,7 +212,6 @@ def test_the_target_is_told_as_a_place_on_earth() -> None:
     assert asked_for(bench, m.PositionTargetGlobalInt) == []
     bench.vehicle.armed = True
     (told,) = asked_for(bench, m.PositionTargetGlobalInt)
-    assert isinstance(told, m.PositionTargetGlobalInt)
     assert (told.lat_int, told.lon_int) == pytest.approx((473977420, 85455940), abs=2)
     assert told.alt == pytest.approx(HOME.alt_amsl_m + 2.0)
 
@@ -226,7 +221,6 @@ def test_the_attitude_target_is_told_in_flight() -> None:
     assert asked_for(bench, m.AttitudeTarget) == []
     bench.vehicle.attitude_goal = AttitudeGoal((1.0, 0.0, 0.0, 0.0), (0.1, 0.2, 0.3), 0.45)
     (told,) = asked_for(bench, m.AttitudeTarget)
-    assert isinstance(told, m.AttitudeTarget)
     assert told.q == (1.0, 0.0, 0.0, 0.0)
     assert told.thrust == pytest.approx(0.45)
 
@@ -238,6 +232,7 @@ def test_modes_are_told_with_their_properties() -> None:
     told = {each.custom_mode: each for each in heard if isinstance(each, m.AvailableModes)}
     for mode in MODES[personality].values():
         assert told[mode.custom_mode].properties == mode.properties
+        assert told[mode.custom_mode].mode_name.rstrip(b"\0").decode() == mode.name
     advanced = [mode.name for mode in MODES[personality].values() if mode.properties]
     assert "ACRO" in advanced
     hidden = MODES["px4"]["POSCTL.ORBIT"].properties

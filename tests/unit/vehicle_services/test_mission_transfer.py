@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import HOME, MS, Bench, FakeVehicle, S
+from tests.unit.vehicle_services.fake_vehicle import HOME, MS, Bench, FakeVehicle, S, of
 from tests.unit.vehicle_services.lossy_upload import (
     ACCEPTED,
     BAD_LINK,
@@ -237,7 +237,7 @@ def test_ardupilot_does_not_count_home_among_the_items_of_mission_current() -> N
         bench = Bench("px4" if personality == "px4" else "ardupilot")
         bench.vehicle.plan = OLD
         heard = bench.send(m.MissionSetCurrent(1, 1, 1))
-        assert [each.total for each in heard if isinstance(each, m.MissionCurrent)] == [total]
+        assert [each.total for each in of(heard, m.MissionCurrent)] == [total]
 
 
 def test_every_personality_says_how_much_it_keeps_of_every_kind() -> None:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S
+from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S, of
 from vehicle_sim.autopilot.interface import MissionReached
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.wire import messages as m
@@ -38,7 +38,7 @@ def asked_for(heard: list[m.Message]) -> list[tuple[str, int]]:
 
 
 def results(heard: list[m.Message]) -> list[int]:
-    return [each.type for each in heard if isinstance(each, m.MissionAck)]
+    return [each.type for each in of(heard, m.MissionAck)]
 
 
 def upload(bench: Bench, items: list[m.MissionItemInt], kind: int = 0) -> list[m.Message]:
@@ -117,7 +117,7 @@ def test_an_item_that_cannot_be_flown_is_named_and_the_old_plan_stays() -> None:
     before = bench.vehicle.plan
     heard = upload(bench, [item(0), item(1, command=82)])
     assert results(heard) == [MissionResult.UNSUPPORTED]
-    (text,) = [each.text for each in heard if isinstance(each, m.Statustext)]
+    (text,) = [each.text for each in of(heard, m.Statustext)]
     assert text.startswith(b"item 1: ")
     assert bench.vehicle.plan == before
 
@@ -154,12 +154,12 @@ def test_fence_and_rally_points_are_kept_apart_from_the_mission(kind: int, comma
     heard = upload(bench, [item(seq, command, kind, p1=3) for seq in range(3)], kind)
     assert results(heard) == [MissionResult.ACCEPTED]
     told = bench.send(m.MissionRequestList(1, 1, kind))
-    assert [each.count_ for each in told if isinstance(each, m.MissionCount)] == [3]
+    assert [each.count_ for each in of(told, m.MissionCount)] == [3]
     assert len(bench.vehicle.plan) == 1
     assert results(upload(bench, [item(0, WAYPOINT, kind)], kind)) == [MissionResult.UNSUPPORTED]
     bench.send(m.MissionClearAll(1, 1, MissionType.ALL))
     told = bench.send(m.MissionRequestList(1, 1, kind))
-    assert [each.count_ for each in told if isinstance(each, m.MissionCount)] == [0]
+    assert [each.count_ for each in of(told, m.MissionCount)] == [0]
     assert not bench.vehicle.plan
 
 
@@ -184,10 +184,10 @@ def test_a_fence_that_makes_no_sense_is_refused_whole_and_the_old_one_stays(
     upload(bench, good, MissionType.FENCE)
     heard = upload(bench, [bad], bad.mission_type)
     assert results(heard) == [result]
-    (text,) = [each.text for each in heard if isinstance(each, m.Statustext)]
+    (text,) = [each.text for each in of(heard, m.Statustext)]
     assert text.startswith(why)
     told = bench.send(m.MissionRequestList(1, 1, MissionType.FENCE))
-    assert [each.count_ for each in told if isinstance(each, m.MissionCount)] == [1]
+    assert [each.count_ for each in of(told, m.MissionCount)] == [1]
     assert len(bench.vehicle.named("load_fence")) == 1
 
 
@@ -201,10 +201,8 @@ def test_types_and_numbers_beyond_all_measure_are_refused() -> None:
 
 def test_the_id_of_a_plan_is_the_same_in_ack_count_and_mission_current() -> None:
     bench = Bench("px4", firmware="1.15")
-    (ack,) = [each for each in upload(bench, [item(0)]) if isinstance(each, m.MissionAck)]
-    (told,) = [
-        each for each in bench.send(m.MissionRequestList(1, 1)) if isinstance(each, m.MissionCount)
-    ]
+    (ack,) = of(upload(bench, [item(0)]), m.MissionAck)
+    (told,) = of(bench.send(m.MissionRequestList(1, 1)), m.MissionCount)
     current = next(each for each in bench.advance(1 * S) if isinstance(each, m.MissionCurrent))
     assert ack.opaque_id == told.opaque_id == current.mission_id != 0
 
@@ -214,7 +212,7 @@ def test_the_recorded_firmware_numbers_no_plans(personality: Personality) -> Non
     """px4_1_14_flight.tlog and arducopter_4_7_flight.tlog: MISSION_ACK of 3 bytes, MISSION_CURRENT
     of 6."""
     bench = Bench(personality)
-    (ack,) = [each for each in upload(bench, [item(0)]) if isinstance(each, m.MissionAck)]
+    (ack,) = of(upload(bench, [item(0)]), m.MissionAck)
     asked = m.CommandLong(m.IDS[m.MissionCurrent], 0, 0, 0, 0, 0, 0, 512, 1, 1, 0)
     current = next(
         each
@@ -283,7 +281,7 @@ def test_set_current_is_answered_with_mission_current_or_refused() -> None:
     bench = Bench("px4")
     upload(bench, [item(0), item(1)])
     heard = bench.send(m.MissionSetCurrent(1, 1, 1))
-    assert [each.seq for each in heard if isinstance(each, m.MissionCurrent)] == [1]
+    assert [each.seq for each in of(heard, m.MissionCurrent)] == [1]
     heard = bench.send(m.MissionSetCurrent(9, 1, 1))
     assert results(heard) == [MissionResult.INVALID_SEQUENCE]
 
@@ -304,5 +302,5 @@ def test_an_item_that_was_reached_is_told_as_often_as_the_autopilot_does(
     bench = Bench("px4" if personality == "px4" else "ardupilot")
     bench.send(m.Heartbeat(0, 6, 8, 0, 4, 3))
     bench.vehicle.pending.append(MissionReached(3))
-    reached = [each for each in bench.advance(3 * S) if isinstance(each, m.MissionItemReached)]
+    reached = of(bench.advance(3 * S), m.MissionItemReached)
     assert [each.seq for each in reached] == [3] * times

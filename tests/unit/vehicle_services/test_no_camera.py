@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import S, acks, long, of
 from tests.unit.vehicle_services.flown_vehicle import Flown
 from tests.unit.vehicle_services.test_real_acks import (
     CAMERA,
@@ -78,7 +78,7 @@ def test_nothing_takes_a_picture(personality: Personality) -> None:
     for asked in (COMMON["2000 image"], COMMON["203 digicam"]):
         bench.send(asked)
     heard = bench.advance(10 * S)
-    assert not [each for each in heard if isinstance(each, m.CameraImageCaptured)]
+    assert not of(heard, m.CameraImageCaptured)
     assert bench.autopilot.images_captured == 0
 
 
@@ -87,7 +87,7 @@ def test_a_camera_cannot_be_streamed(personality: Personality) -> None:
     bench = bare(personality)
     asked = long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[m.CameraSettings], 1e6)
     assert bench.result(asked) != Result.ACCEPTED
-    assert not [each for each in bench.advance(3 * S) if isinstance(each, m.CameraSettings)]
+    assert not of(bench.advance(3 * S), m.CameraSettings)
 
 
 def test_a_mission_flies_on_without_its_pictures() -> None:

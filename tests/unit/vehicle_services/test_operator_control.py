@@ -10,7 +10,7 @@ import math
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import Bench, S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import Bench, S, acks, long, of
 from vehicle_sim.autopilot.interface import Result
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.simulation.world import Datagram
@@ -49,7 +49,7 @@ class Field(Bench):
     def status(self) -> tuple[int, int]:
         """What CONTROL_STATUS says: the flags, and who is in control."""
         heard = self.say(SECOND, long(REQUEST_MESSAGE, 512))
-        told = [each for each in heard if isinstance(each, m.ControlStatus)][-1]
+        told = of(heard, m.ControlStatus)[-1]
         assert told.gcs_secondary == bytes(10)
         return told.flags, told.gcs_main
 
@@ -87,10 +87,10 @@ def test_who_asks_first_is_in_control_and_alone_is_obeyed(personality: Personali
 
 def test_control_status_comes_once_a_second_and_at_each_change() -> None:
     field = Field()
-    told = [e for e in field.advance(5 * S, "station 254") if isinstance(e, m.ControlStatus)]
+    told = of(field.advance(5 * S, "station 254"), m.ControlStatus)
     assert len(told) == 5
     heard = heard_by(field, SECOND, FIRST, long(ASK, 1))
-    (changed,) = [each for each in heard if isinstance(each, m.ControlStatus)]
+    (changed,) = of(heard, m.ControlStatus)
     assert changed.gcs_main == FIRST
 
 
@@ -98,7 +98,7 @@ def test_without_permission_the_one_in_control_is_asked() -> None:
     field = Field()
     field.request(FIRST)
     heard = heard_by(field, FIRST, SECOND, long(ASK, 1, 1, 30))
-    (asked,) = [each for each in heard if isinstance(each, m.CommandLong)]
+    (asked,) = of(heard, m.CommandLong)
     assert (asked.command, asked.target_system) == (ASK, FIRST)
     assert asked[:4] == (1.0, 1.0, 30.0, float(SECOND))
     assert field.status() == (MANAGER, FIRST)
@@ -119,7 +119,7 @@ def test_the_time_to_answer_is_within_its_range(asked_s: float, told_s: float) -
     field = Field()
     field.request(FIRST)
     heard = heard_by(field, FIRST, SECOND, long(ASK, 1, 0, asked_s))
-    (asked,) = [each for each in heard if isinstance(each, m.CommandLong)]
+    (asked,) = of(heard, m.CommandLong)
     assert asked.param3 == told_s
 
 
@@ -148,7 +148,7 @@ def test_a_request_that_is_repeated_is_answered_alike_and_asks_once() -> None:
     field.request(FIRST)
     first = heard_by(field, FIRST, SECOND, long(ASK, 1))
     again = heard_by(field, FIRST, SECOND, long(ASK, 1, confirmation=1))
-    asked = [[e for e in heard if isinstance(e, m.CommandLong)] for heard in (first, again)]
+    asked = [of(heard, m.CommandLong) for heard in (first, again)]
     assert [len(each) for each in asked] == [1, 0]
 
 
@@ -235,7 +235,7 @@ def test_off_as_delivered(personality: Personality) -> None:
     bench = Bench(personality)
     assert acks(bench.send(long(ASK, 1))) == [(ASK, Result.UNSUPPORTED)]
     heard = bench.advance(5 * S)
-    assert not [each for each in heard if isinstance(each, m.ControlStatus)]
+    assert not of(heard, m.ControlStatus)
     assert not capabilities(bench) & Capability.COMPONENT_ACCEPTS_GCS_CONTROL
 
 

@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S
+from tests.unit.vehicle_services.fake_vehicle import MS, Bench, S, of
 from vehicle_sim.services.parameters import decode, encode
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.ids import ParamType
 
 
 def values(heard: list[m.Message]) -> list[m.ParamValue]:
-    return [each for each in heard if isinstance(each, m.ParamValue)]
+    return of(heard, m.ParamValue)
 
 
 def name(value: m.ParamValue) -> str:

@@ -7,7 +7,7 @@ from typing import Final
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import Bench, S, long
+from tests.unit.vehicle_services.fake_vehicle import NUMBERS, Bench, Kind, S, long, of
 from tests.unit.vehicle_services.flown_vehicle import Flown
 from vehicle_sim.autopilot.interface import AttitudeGoal, Landed
 from vehicle_sim.autopilot.modes import Personality
@@ -164,7 +164,7 @@ def test_ardupilot_tells_its_landed_state_as_soon_as_it_is_initialised() -> None
     bench = Flown("ardupilot", boot="real")
     bench.send(long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[m.ExtendedSysState], 200_000))
     assert Counter(map(type, bench.advance(12 * S // 5)))[m.ExtendedSysState] == 0
-    told = [each for each in bench.advance(S) if isinstance(each, m.ExtendedSysState)]
+    told = of(bench.advance(S), m.ExtendedSysState)
     assert len(told) == 5
     assert {each.landed_state for each in told} == {Landed.ON_GROUND}
 
@@ -226,21 +226,15 @@ def test_a_link_may_say_what_it_is() -> None:
 # ---------------------------------------------------------------- what is told in these sets
 
 
-def last(told: list[m.Message], kind: type[m.Message]) -> m.Message:
-    return [each for each in told if type(each) is kind][-1]
-
-
 def test_on_the_ground_px4_holds_no_place_and_pushes_into_the_ground(
     heard: dict[LinkMode, list[m.Message]],
 ) -> None:
     """px4_1_14_flight.tlog, 0 to 66 s: NaN, acceleration 0, 0, 100, type_mask 63."""
-    target = last(heard[LinkMode.NORMAL], m.PositionTargetLocalNed)
-    assert isinstance(target, m.PositionTargetLocalNed)
+    target = of(heard[LinkMode.NORMAL], m.PositionTargetLocalNed)[-1]
     assert all(each != each for each in target[1:7])
     assert (target.afx, target.afy, target.afz) == (0.0, 0.0, 100.0)
     assert (target.type_mask, target.coordinate_frame) == (63, 1)
-    attitude = last(heard[LinkMode.NORMAL], m.AttitudeTarget)
-    assert isinstance(attitude, m.AttitudeTarget)
+    attitude = of(heard[LinkMode.NORMAL], m.AttitudeTarget)[-1]
     assert attitude.q == pytest.approx((1.0, 0.0, 0.0, 0.0))
     assert attitude.thrust == pytest.approx(0.001)
 
@@ -250,11 +244,9 @@ def test_in_flight_the_targets_are_those_of_the_controllers() -> None:
     bench.vehicle.armed = True
     bench.vehicle.attitude_goal = AttitudeGoal((0.8, 0.0, 0.0, 0.6), (0.1, 0.2, 0.3), 0.45)
     told = bench.send(GROUND) + bench.advance(S)
-    target = last(told, m.PositionTargetLocalNed)
-    assert isinstance(target, m.PositionTargetLocalNed)
+    target = of(told, m.PositionTargetLocalNed)[-1]
     assert (target.x, target.y, target.z) == (0.0, 0.0, -2.0)
-    attitude = last(told, m.AttitudeTarget)
-    assert isinstance(attitude, m.AttitudeTarget)
+    attitude = of(told, m.AttitudeTarget)[-1]
     assert (*attitude.q, attitude.thrust) == pytest.approx((0.8, 0.0, 0.0, 0.6, 0.45))
 
 
@@ -264,8 +256,7 @@ def test_odometry_is_in_ned_and_along_the_bodys_axes() -> None:
     bench = Bench("px4", stream_sets=REAL["px4"], mode=LinkMode.ONBOARD)
     half = 0.5**0.5
     bench.vehicle.q_ned_from_frd = (half, 0.0, 0.0, -half)
-    told = last(bench.send(GROUND) + bench.advance(S), m.Odometry)
-    assert isinstance(told, m.Odometry)
+    told = of(bench.send(GROUND) + bench.advance(S), m.Odometry)[-1]
     assert (told.x, told.y, told.z) == (10.0, 20.0, -5.0)
     assert (told.vx, told.vy, told.vz) == pytest.approx((0.0, 1.0, 0.0), abs=1e-6)
     assert (told.frame_id, told.child_frame_id, told.estimator_type) == (1, 12, 8)
@@ -277,20 +268,18 @@ def test_odometry_is_in_ned_and_along_the_bodys_axes() -> None:
     ]
 
 
-def asked_at_1_hz(bench: Bench, kind: type[m.Message]) -> m.Message:
-    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, m.IDS[kind], 1_000_000))
-    return last(bench.advance(2 * S), kind)
+def asked_at_1_hz(bench: Bench, kind: type[Kind]) -> Kind:
+    bench.send(long(Cmd.SET_MESSAGE_INTERVAL, NUMBERS[kind], 1_000_000))
+    return of(bench.advance(2 * S), kind)[-1]
 
 
 def test_outputs_are_900_while_disarmed_and_pulses_in_flight() -> None:
     """px4_1_14_flight.tlog: ACTUATOR_OUTPUT_STATUS active 16, sixteen times 900, then 0."""
     bench = Bench("px4")
     told = asked_at_1_hz(bench, m.ActuatorOutputStatus)
-    assert isinstance(told, m.ActuatorOutputStatus)
     assert (told.active, told.actuator) == (16, (900.0,) * 16 + (0.0,) * 16)
     bench.vehicle.armed, bench.vehicle.motor_outputs = True, (0.5, 0.25, 0.75, 1.0)
     told = asked_at_1_hz(bench, m.ActuatorOutputStatus)
-    assert isinstance(told, m.ActuatorOutputStatus)
     assert told.actuator[:5] == (1500.0, 1250.0, 1750.0, 2000.0, 900.0)
 
 
@@ -298,12 +287,10 @@ def test_the_motor_controllers_share_the_batterys_current() -> None:
     bench = Bench("px4")
     bench.vehicle.motor_outputs = (0.5, 0.25, 0.75, 0.5)
     told = asked_at_1_hz(bench, m.EscStatus)
-    assert isinstance(told, m.EscStatus)
     assert told.rpm == (4750, 2375, 7125, 4750)
     assert told.voltage == pytest.approx((15.2,) * 4)
     assert told.current == pytest.approx((1.0, 0.5, 1.5, 1.0))
     info = asked_at_1_hz(bench, m.EscInfo)
-    assert isinstance(info, m.EscInfo)
     assert (info.count_, info.info, info.failure_flags) == (4, 0b1111, (0,) * 4)
 
 
@@ -311,11 +298,9 @@ def test_utm_position_is_told_as_px4_fills_it() -> None:
     """px4_1_14_flight.tlog: state 1, flags 109, height 0 on the ground; then 3, 125."""
     bench = Bench("px4")
     told = asked_at_1_hz(bench, m.UtmGlobalPosition)
-    assert isinstance(told, m.UtmGlobalPosition)
     assert (told.flight_state, told.flags, told.relative_alt) == (1, 109, 0)
     bench.vehicle.landed = Landed.IN_AIR
     told = asked_at_1_hz(bench, m.UtmGlobalPosition)
-    assert isinstance(told, m.UtmGlobalPosition)
     assert (told.flight_state, told.flags, told.relative_alt) == (3, 125, 5000)
 
 
@@ -323,7 +308,6 @@ def test_remote_identification_is_told_as_px4_fills_it() -> None:
     """px4_1_14_flight.tlog: timestamp 65535, status 1 and 2, accuracies 12, 5, 1, 3; area -1000."""
     bench = Bench("px4")
     told = asked_at_1_hz(bench, m.OpenDroneIdLocation)
-    assert isinstance(told, m.OpenDroneIdLocation)
     assert (told.latitude, told.longitude) == (473978000, 85459000)
     assert (told.altitude_geodetic, told.height, told.timestamp) == (493.0, 5.0, 65535.0)
     assert (told.direction, told.speed_horizontal, told.speed_vertical) == (0, 100, 0)
@@ -332,10 +316,8 @@ def test_remote_identification_is_told_as_px4_fills_it() -> None:
     assert (*accuracies, told.speed_accuracy) == (12, 5, 1, 3)
     bench.vehicle.landed = Landed.IN_AIR
     told = asked_at_1_hz(bench, m.OpenDroneIdLocation)
-    assert isinstance(told, m.OpenDroneIdLocation)
     assert told.status == 2
     operator = asked_at_1_hz(bench, m.OpenDroneIdSystem)
-    assert isinstance(operator, m.OpenDroneIdSystem)
     assert (operator.operator_latitude, operator.operator_longitude) == (473977420, 85455940)
     assert (operator.area_ceiling, operator.area_floor, operator.area_count) == (
         -1000.0,

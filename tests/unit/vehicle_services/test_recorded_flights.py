@@ -9,7 +9,7 @@ from math import hypot, nan
 
 import pytest
 
-from tests.unit.vehicle_services.fake_vehicle import MS, S, acks, long
+from tests.unit.vehicle_services.fake_vehicle import MS, S, acks, long, of
 from tests.unit.vehicle_services.flown_vehicle import (
     HOME,
     Flown,
@@ -92,16 +92,6 @@ def test_px4_still_takes_off_when_hold_comes_while_it_stands() -> None:
     assert bench.mode_name == "AUTO.LOITER"
 
 
-def test_px4_flies_off_when_armed_with_a_place_that_it_was_given_disarmed() -> None:
-    """A4: takes off by itself after arming."""
-    bench = on_the_ground("px4")
-    assert bench.result(reposition(0), 0) == Result.UNSUPPORTED
-    assert bench.result(reposition(1), 0) == Result.ACCEPTED
-    bench.mode("AUTO.LOITER")
-    assert bench.result(ARM, 4 * S) == Result.ACCEPTED
-    assert bench.autopilot.landed is Landed.IN_AIR
-
-
 def test_px4_stands_after_arming_in_hold_alone_and_disarms() -> None:
     """A6: "Disarmed by auto preflight disarming" 10 s after arming; nothing is left of a place
     of an earlier flight."""
@@ -116,46 +106,6 @@ def test_px4_stands_after_arming_in_hold_alone_and_disarms() -> None:
     heard += bench.advance(1_000 * MS)
     assert "Disarmed by auto preflight disarming\t" in bench.texts(heard)
     assert bench.autopilot.landed is Landed.ON_GROUND
-
-
-@pytest.mark.parametrize("mode", ["AUTO.LOITER", "AUTO.RTL", "AUTO.LAND"])
-def test_px4_repositions_with_the_flag_from_any_mode(mode: str) -> None:
-    """A3 (vehicle.md 4)."""
-    bench = in_the_air("px4")
-    bench.mode(mode)
-    assert bench.result(reposition(0), 0) == Result.UNSUPPORTED
-    assert bench.mode_name == mode
-    assert bench.result(reposition(1), 0) == Result.ACCEPTED
-    assert bench.mode_name == "AUTO.LOITER"
-
-
-@pytest.mark.parametrize("mode", ["LOITER", "RTL", "LAND"])
-def test_ardupilot_repositions_from_another_mode_only_with_the_flag(mode: str) -> None:
-    """A3 (vehicle.md 4): DENIED without; in GUIDED itself the flag makes no difference."""
-    bench = in_the_air("ardupilot")
-    assert bench.result(reposition(0), 0) == Result.ACCEPTED
-    by_long = long(Cmd.DO_REPOSITION, -1, 1, 0, nan, HOME.lat_deg, HOME.lon_deg, 5)
-    assert bench.result(by_long, 0) == Result.UNSUPPORTED
-    bench.mode(mode)
-    assert bench.result(reposition(0), 0) == Result.DENIED
-    assert bench.mode_name == mode
-    assert bench.result(reposition(1), 0) == Result.ACCEPTED
-    assert bench.mode_name == "GUIDED"
-
-
-def test_ardupilot_drops_the_take_off_for_a_place() -> None:
-    """A1: before the motors are up: it never leaves the ground, and disarms after 10 s.
-
-    The recorded one needs 3 s for that, this one 0.5 s."""
-    bench = on_the_ground("ardupilot")
-    take_off(bench)
-    bench.advance(200 * MS)
-    assert bench.result(reposition(1), 0) == Result.ACCEPTED
-    bench.advance(8 * S)
-    assert bench.autopilot.landed is Landed.ON_GROUND
-    assert bench.autopilot.armed
-    bench.advance(3 * S)
-    assert not bench.autopilot.armed
 
 
 # ------------------------------------------------------------ B sticks lost (clients.md 6)
@@ -216,31 +166,9 @@ def test_ardupilot_waits_and_sets_its_speed_before_the_take_off() -> None:
     heard = bench.advance(4_900 * MS)
     assert bench.autopilot.landed is Landed.ON_GROUND
     heard += bench.advance(15 * S)
-    reached = [each.seq for each in heard if isinstance(each, m.MissionItemReached)]
+    reached = [each.seq for each in of(heard, m.MissionItemReached)]
     assert reached == [2, 3]
     assert fastest(bench, 6) == pytest.approx(3.0, abs=0.3)
-
-
-def test_ardupilot_refuses_auto_without_a_take_off_while_armed_on_the_ground() -> None:
-    """C3: FAILED with two texts; disarmed it is ACCEPTED, and then not armable."""
-    bench = on_the_ground("ardupilot")
-    bench.parameters.set("AUTO_OPTIONS", 0)  # as recorded
-    bench.autopilot.load_plan((HOME_ITEM, item(1, 16, x=473978768, y=85455937, z=8)))
-    auto = long(176, 1, 3)
-    bench.mode("GUIDED")
-    assert bench.result(ARM) == Result.ACCEPTED
-    for asked in (auto, long(300)):
-        heard = bench.send(asked)
-        assert acks(heard) == [(asked.command, Result.FAILED)]
-        assert bench.texts(bench.advance(S)) == [
-            "Auto: Missing Takeoff Cmd",
-            "Mode change to Auto failed: init failed",
-        ]
-    assert bench.result(DISARM, 0) == Result.ACCEPTED
-    assert bench.result(auto, 0) == Result.ACCEPTED
-    heard = bench.send(ARM) + bench.advance(S)
-    assert acks(heard) == [(400, Result.FAILED)]
-    assert "Arm: Auto mode not armable" in bench.texts(heard)
 
 
 def test_ardupilot_without_a_mission_starts_none_when_armed() -> None:
@@ -257,17 +185,6 @@ def test_ardupilot_without_a_mission_starts_none_when_armed() -> None:
     heard = bench.send(ARM) + bench.advance(S // 10)
     assert acks(heard) == [(400, Result.FAILED)]
     assert bench.texts(heard) == ["Arm: Mode requires mission"]
-    flying = in_the_air("ardupilot")
-    assert flying.result(long(300)) == Result.FAILED
-    assert flying.result(long(176, 1, 3)) == Result.FAILED
-
-
-def test_px4_takes_the_mission_mode_without_a_mission_only_disarmed() -> None:
-    """C10: TEMPORARILY_REJECTED armed and in the air."""
-    bench = on_the_ground("px4")
-    assert bench.result(ARM, 0) == Result.ACCEPTED
-    assert bench.result(long(176, 1, 4, 4), 0) == Result.TEMPORARILY_REJECTED
-    assert in_the_air("px4").result(long(176, 1, 4, 4)) == Result.TEMPORARILY_REJECTED
 
 
 # ------------------------------------------------ what ArduCopter tells, D3, J2, K1, C1
@@ -326,31 +243,6 @@ def test_px4_checks_before_arming_without_a_word_about_its_mode() -> None:
     assert bench.texts(heard) == []
 
 
-# --------------------------------------------------------- G station lost (vehicle.md 1)
-
-
-@pytest.mark.parametrize("systems", [(255, 77), (77,)])
-def test_only_its_own_station_keeps_ardupilots_failsafe_away(systems: tuple[int, ...]) -> None:
-    """G8: 255 silent while 77 beats: "GCS Failsafe", RTL."""
-    bench = in_the_air("ardupilot")
-    bench.parameters.set("FS_GCS_ENABLE", 1)
-    beat(bench, 2, (255, 77))
-    heard = beat(bench, 8, systems)
-    lost = 255 not in systems
-    assert ("GCS Failsafe" in bench.texts(heard)) is lost
-    assert bench.mode_name == ("RTL" if lost else "GUIDED")
-
-
-def test_any_station_keeps_px4s_failsafe_away() -> None:
-    """G3."""
-    bench = in_the_air("px4")
-    bench.parameters.set("NAV_DLL_ACT", 2)
-    bench.parameters.set("COM_DL_LOSS_T", 5)
-    beat(bench, 2, (255,))
-    beat(bench, 12, (77,))
-    assert bench.mode_name == "AUTO.LOITER"
-
-
 # ------------------------------------------- H speed and termination (vehicle.md 2, 3, 5, 8)
 
 
@@ -407,29 +299,6 @@ def test_ardupilot_sets_the_climb_rate_by_type() -> None:
     assert fastest(bench, 8) > 3.0
 
 
-def test_px4_stays_armed_after_a_landing_where_the_time_to_disarm_is_zero() -> None:
-    """H2: COM_DISARM_LAND 0 = never: armed in AUTO.LAND for the 13 s that were watched."""
-    bench = in_the_air("px4")
-    bench.parameters.set("COM_DISARM_LAND", 0)
-    bench.mode("AUTO.LAND")
-    bench.advance(12 * S)
-    while bench.autopilot.landed is not Landed.ON_GROUND:
-        bench.advance(S)
-        assert bench.now_ns < 60 * S
-    bench.advance(13 * S)
-    assert bench.autopilot.armed
-    assert bench.result(DISARM) == Result.ACCEPTED
-
-
-def test_px4_stays_armed_on_the_ground_where_that_time_is_zero() -> None:
-    """H2b: COM_DISARM_PRFLT 0: 15.6 s watched."""
-    bench = on_the_ground("px4")
-    bench.parameters.set("COM_DISARM_PRFLT", 0)
-    assert bench.result(ARM) == Result.ACCEPTED
-    bench.advance(16 * S)
-    assert bench.autopilot.armed
-
-
 def test_px4_ends_its_termination() -> None:
     """H3: disarmed, param1 1: TERMINATION, arming and forced arming TEMPORARILY_REJECTED; 0 ends
     it, and it arms."""
@@ -446,18 +315,6 @@ def test_px4_ends_its_termination() -> None:
     assert bench.result(ARM) == Result.ACCEPTED
 
 
-def test_ardupilots_termination_is_a_disarming() -> None:
-    """H4, H5: 0 FAILED; 1 ACCEPTED, "Disarming motors", it falls, and arms again."""
-    bench = in_the_air("ardupilot")
-    assert bench.result(long(185, 0), 0) == Result.FAILED
-    heard = bench.send(long(185, 1)) + bench.advance(4 * S)
-    assert acks(heard) == [(185, Result.ACCEPTED)]
-    assert bench.texts(heard)[0] == "Disarming motors"
-    assert bench.autopilot.system_status == 3
-    assert bench.result(ARM) == Result.ACCEPTED
-    assert on_the_ground("ardupilot").result(long(185, 1)) == Result.ACCEPTED
-
-
 # ------------------------------------------------------------------------- F fence
 
 
@@ -472,31 +329,6 @@ def test_px4_takes_a_fence_circle_of_any_radius(radius_m: float) -> None:
     bench.advance(S)
     assert bench.result(ARM) == Result.TEMPORARILY_REJECTED
     assert on_the_ground("ardupilot").autopilot.check_fence((circle,)) is not None
-
-
-def test_one_inclusion_zone_of_several_is_enough_for_px4() -> None:
-    """F2 (clients.md 19); ArduPilot wants all (F2)."""
-    here = item(0, 5003, 20.0, x=473977420, y=85455940)
-    there = item(1, 5003, 20.0, x=473987420, y=85455940)
-    for personality, result in (("px4", Result.ACCEPTED), ("ardupilot", Result.FAILED)):
-        bench = on_the_ground(personality)  # type: ignore[arg-type]
-        if personality == "ardupilot":
-            bench.parameters.set("FENCE_ENABLE", 1)
-            bench.parameters.set("FENCE_TYPE", 4)
-            bench.mode("GUIDED")
-        bench.autopilot.load_fence((here, there))
-        bench.advance(S)
-        assert bench.result(ARM) == result
-
-
-def test_px4_accepts_a_place_outside_its_fence_and_stays() -> None:
-    """F2: "Reposition is outside geofence"."""
-    bench = in_the_air("px4")
-    bench.autopilot.load_fence((item(0, 5003, 20.0, x=473977420, y=85455940),))
-    heard = bench.send(reposition(1, north_m=60.0)) + bench.advance(6 * S)
-    assert acks(heard) == [(192, Result.ACCEPTED)]
-    assert "Reposition is outside geofence\t" in bench.texts(heard)
-    assert hypot(*bench.autopilot.truth.pos_ned[:2]) < 2.0
 
 
 # ------------------------------------------------------------ heartbeats, texts, banner
@@ -534,7 +366,7 @@ def test_ardupilot_sends_its_banner_and_px4_does_not_know_the_command() -> None:
     """D3 (clients.md 21)."""
     heard = on_the_ground("ardupilot").send(long(Cmd.DO_SEND_BANNER))
     assert acks(heard) == [(Cmd.DO_SEND_BANNER, Result.ACCEPTED)]
-    assert len([each for each in heard if isinstance(each, m.Statustext)]) == 3
+    assert len(of(heard, m.Statustext)) == 3
     px4 = on_the_ground("px4").result(long(Cmd.DO_SEND_BANNER))
     assert px4 == Result.UNSUPPORTED
 
@@ -542,8 +374,8 @@ def test_ardupilot_sends_its_banner_and_px4_does_not_know_the_command() -> None:
 def test_ardupilot_sends_its_home_when_it_changes_or_is_asked_for() -> None:
     """clients.md 21: never unasked at a rate."""
     bench = on_the_ground("ardupilot")
-    assert not [each for each in bench.advance(5 * S) if isinstance(each, m.HomePosition)]
-    (home,) = [each for each in bench.send(long(410)) if isinstance(each, m.HomePosition)]
+    assert not of(bench.advance(5 * S), m.HomePosition)
+    (home,) = of(bench.send(long(410)), m.HomePosition)
     assert all(part != part for part in home.q), "NaN, as the real one sends"
 
 
@@ -567,7 +399,7 @@ def test_ardupilots_vtol_state_is_a_multicopters() -> None:
     for personality, state in (("px4", 0), ("ardupilot", 3)):
         bench = on_the_ground(personality)  # type: ignore[arg-type]
         bench.send(long(511, 245, 200_000))
-        told = [each for each in bench.advance(S) if isinstance(each, m.ExtendedSysState)]
+        told = of(bench.advance(S), m.ExtendedSysState)
         assert {each.vtol_state for each in told} == {state}
 
 
