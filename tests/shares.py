@@ -96,13 +96,13 @@ def other_flights(items: Sequence[pytest.Item]) -> Iterator[pytest.Item]:
     cases: dict[tuple[str, int], list[pytest.Item]] = defaultdict(list)
     for item in items:
         if item.nodeid.startswith(FLIGHTS) and not item.get_closest_marker("thorough"):
-            cases[item.nodeid.partition("[")[0], _place(item)].append(item)
+            cases[item.nodeid.partition("[")[0], place_in_file(item)].append(item)
     for (_, place), flights in cases.items():
         flown = flights[place % min(ONE_OF, len(flights)) :: ONE_OF]
         yield from (flight for flight in flights if flight not in flown)
 
 
-def _place(item: pytest.Item) -> int:
+def place_in_file(item: pytest.Item) -> int:
     """Which test of its file this is, whichever of them are asked for; the first one is 0."""
     test = cast("pytest.Function", item)
     return [name for name in vars(test.module) if name.startswith("test_")].index(test.originalname)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import pytest
-
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from tests.loopback.bridged import north_of_home, take_off
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.plan_clients import PlanFlight
 
 ACCEPTED, TEMPORARILY_REJECTED = 0, 1
@@ -15,7 +13,6 @@ CONTROL, REPOSITION = 32100, 192
 REPLACE = parse_policy('retarget = "replace"', "replace.toml")
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_who_takes_control_is_told_that_anothers_goal_is_flown(personality: Personality) -> None:
     flight = PlanFlight(personality, policy=REPLACE)
     take_off(flight)

@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import all as dialect
 from gcs.gate.states import State
 from gcs.wire.frame import Frame, split
 from tests.loopback.bridged import Client, joined, take_off
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.lossy_link import CLEAR, Air
 from tests.loopback.plan_clients import Mavsdk, PlanFlight, mission
 
@@ -44,7 +44,6 @@ def hovering(personality: Personality) -> tuple[PlanFlight, Client, WayDown]:
     return flight, client, flight.down
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize("command", [RETURN, LAND, MISSION_START])
 def test_what_the_heartbeat_shows_is_answered(command: int, personality: Personality) -> None:
     flight, client, _ = hovering(personality)
@@ -64,7 +63,6 @@ def test_a_take_off_of_a_px4_is_answered_while_it_climbs() -> None:
     assert flight.is_in(State.TAKING_OFF)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize("command", [RETURN, LAND])
 def test_a_mode_that_no_heartbeat_shows_is_not_answered(
     command: int, personality: Personality

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.bridge.conversation.dialogue import AGAIN_NS
 from tests.loopback.bridged import VEHICLE, BridgedFlight, joined
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.stranger import stranger
 
 ARM, ACCEPTED = 400, 0
 DISARM = dialect.MAVLink_command_long_message(*VEHICLE, ARM, 0, *[0.0] * 7)
-both = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
-@both
 def test_an_arming_after_somebody_has_disarmed_it_is_decided_anew(
     personality: Personality,
 ) -> None:
@@ -31,7 +28,6 @@ def test_an_arming_after_somebody_has_disarmed_it_is_decided_anew(
     assert [one.word for one in flight.decisions("accepted")].count("arm") == 2
 
 
-@both
 def test_an_arming_whose_answer_was_lost_is_not_decided_twice(personality: Personality) -> None:
     flight, client = joined(BridgedFlight(personality))
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED

@@ -14,7 +14,7 @@ from gcs.gate.states import State
 from gcs.session import inputs
 from tests.loopback.bridged import BridgedFlight, joined
 from tests.loopback.fleet import Fleet
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.test_arm_authorizer import GUARDED
 from vehicle_sim.simulation.world import Datagram, Transmit
 
@@ -45,7 +45,6 @@ def lines(flight: BridgedFlight) -> list[tuple[int, str]]:
     return [(level, text) for level, text in logged if UNASKED in text]
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_strangers_arming_is_told_once_and_again_when_it_is_another_one(
     personality: Personality,
 ) -> None:
@@ -65,7 +64,6 @@ def test_a_strangers_arming_is_told_once_and_again_when_it_is_another_one(
     assert len(lines(flight)) == 2
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_an_arming_of_a_client_or_of_an_operator_is_not_told_so(personality: Personality) -> None:
     flight, client = joined(BridgedFlight(personality))
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED

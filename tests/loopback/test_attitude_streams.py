@@ -20,7 +20,7 @@ from gcs.wire.codec import decode
 from gcs.wire.messages import SetAttitudeTarget
 from tests.loopback.boxed_stream import BoxedStream, box_fence, taken_off
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, joined
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from vehicle_sim.simulation.fault_script import fault_of
 
 ACCEPTED = 0
@@ -42,8 +42,6 @@ POSITION_ONLY = 3576
 """POSITION_TARGET_TYPEMASK of a hold."""
 ATTITUDE_ONLY = 7
 """ATTITUDE_TARGET_TYPEMASK: body rates are ignored, as MAVSDK and MAVROS send it."""
-
-both = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
 class Attitudes(BoxedStream):
@@ -111,7 +109,6 @@ def speed_m_s(flight: BridgedFlight) -> float:
 # --------------------------------------------------------------------------------- it is flown
 
 
-@both
 def test_tilting_flies_where_it_leans_and_silence_holds(personality: Personality) -> None:
     """5 degrees of nose down for 3 s from rest: g sin(5) t^2 / 2 is 3.8 m, drag takes some."""
     flight, client, stream = flying(personality)
@@ -130,7 +127,6 @@ def test_tilting_flies_where_it_leans_and_silence_holds(personality: Personality
     assert {setpoint.type_mask for setpoint in flight.setpoints(since_ns)} == {POSITION_ONLY}
 
 
-@both
 def test_a_yaw_rate_beside_it_turns_the_nose(personality: Personality) -> None:
     flight, _, stream = flying(personality)
     mask = 3 if personality == "px4" else 0
@@ -150,7 +146,6 @@ def test_a_yaw_rate_beside_it_turns_the_nose(personality: Personality) -> None:
 # ------------------------------------------------------------------------- it cannot leave
 
 
-@both
 @pytest.mark.parametrize(
     ("roll_deg", "pitch_deg", "more_thrust"),
     [(0.0, -10.0, 0.0), (-7.0, 7.0, 0.0), (10.0, 0.0, 0.01), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)],
@@ -181,7 +176,6 @@ def test_at_the_fence_it_is_held_inside_and_flown_back(
 
 
 @pytest.mark.thorough
-@both
 @pytest.mark.parametrize("seed", range(3))
 def test_hostile_attitudes_never_take_it_out(personality: Personality, seed: int) -> None:
     """Anything for 25 s, in wind: for a while each, at any rate, with and without pauses."""
@@ -207,7 +201,6 @@ def test_hostile_attitudes_never_take_it_out(personality: Personality, seed: int
 # ------------------------------------------------------------------------- it is not flown
 
 
-@both
 def test_body_rates_alone_are_refused_with_the_reason(personality: Personality) -> None:
     flight, client, stream = flying(personality)
     for _ in range(20):
@@ -218,7 +211,6 @@ def test_body_rates_alone_are_refused_with_the_reason(personality: Personality) 
     assert "where body rates alone turn" in client.texts()
 
 
-@both
 def test_none_is_flown_unless_the_policy_says_so(personality: Personality) -> None:
     flight, client, stream = flying(personality, policy=parse_policy(FENCE, "default.toml"))
     stream.fly(1.0, 0.0, -5.0, HOVER[personality])

@@ -6,7 +6,7 @@ import pytest
 
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
-from tests.loopback.flight import HOMES, PERSONALITIES, Personality
+from tests.loopback.flight import HOMES, Personality
 from tests.loopback.plan_clients import ACCEPTED, NO_PLACE, Mavsdk, PlanFlight, PlanItem, mission
 
 DENIED, DENIED_COMMAND = 14, 2
@@ -22,7 +22,6 @@ def connected(personality: Personality, endurance_s: float) -> PlanFlight:
     return flight
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_it_never_reaches_the_vehicle_and_its_client_reads_why(personality: Personality) -> None:
     flight = connected(personality, 60.0)
     client = flight.clients[1]
@@ -35,7 +34,6 @@ def test_it_never_reaches_the_vehicle_and_its_client_reads_why(personality: Pers
     assert "the battery is low after" in client.texts()
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_what_repeats_for_ever_is_refused_and_what_repeats_once_is_flown(
     personality: Personality,
 ) -> None:
@@ -53,7 +51,6 @@ def test_what_repeats_for_ever_is_refused_and_what_repeats_once_is_flown(
     flight.until(lambda: flight.is_in(State.FLYING_MISSION), 10.0)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_at_its_start_the_charge_that_is_left_then_counts(personality: Personality) -> None:
     """A battery that just lasts for it on the ground does not after two minutes of hovering."""
     flight = connected(personality, 600.0)

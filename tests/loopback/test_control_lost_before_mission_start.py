@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
-
 from gcs.gate.states import State
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.lossy_link import Weather
 from tests.loopback.plan_clients import ACCEPTED, Mavsdk, PlanFlight, mission
 from tests.loopback.test_set_current import ARM, MISSION_START, square
@@ -14,7 +12,6 @@ REQUEST_OPERATOR_CONTROL = 32100
 SLOW = Weather(delay_s=(0.1, 0.1))
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_who_has_lost_control_meanwhile_starts_no_mission(personality: Personality) -> None:
     flight = PlanFlight(personality, vehicle_weather=SLOW)
     first, second = flight.join(), flight.join(246)

@@ -10,7 +10,7 @@ from gcs.gate.states import State
 from tests.loopback.bridged import Client
 from tests.loopback.copies import each_flies_itself, fly_or_copy
 from tests.loopback.fleet import Fleet
-from tests.loopback.flight import HOMES, PEER, PERSONALITIES, Flight, Personality
+from tests.loopback.flight import HOMES, PEER, Flight, Personality
 from tests.loopback.lossy_link import Weather
 from tests.loopback.observed import START_NS, Sent
 from vehicle_sim.autopilot.autopilot import Autopilot
@@ -21,8 +21,6 @@ from vehicle_sim.simulation.world import Datagram, LinkSpec, Transmit, Wake, Wor
 
 ROUGH = Weather(loss=0.1, duplicate=0.1, corrupt=0.05, delay_s=(0.001, 0.08))
 MS = 1_000_000
-
-both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
 def lab_flight(personality: Personality, seed: int) -> Flight:
@@ -61,7 +59,6 @@ def _said(world: World, given: Wake | Datagram, now_ns: int) -> list[bytes]:
     return [item.data for item in world.handle(given, now_ns) if isinstance(item, Transmit)]
 
 
-@both_personalities
 def test_a_vehicle_says_the_same_bytes_in_whatever_batches_it_lives(
     personality: Personality,
 ) -> None:
@@ -74,7 +71,6 @@ def test_a_vehicle_says_the_same_bytes_in_whatever_batches_it_lives(
     assert answers(personality, 8, given, wake_ms=20) != once
 
 
-@both_personalities
 def test_two_flights_of_one_seed_are_one_record(personality: Personality) -> None:
     one, two, other = (lab_flight(personality, seed) for seed in (7, 7, 8))
     assert len(one.records) > 2000
@@ -98,7 +94,6 @@ def in_the_air(personality: Personality) -> Flight:
     return flight
 
 
-@both_personalities
 def test_a_copy_goes_on_as_the_flight_that_it_is_a_copy_of(personality: Personality) -> None:
     """What tests that begin in the air rest on (`copies.py`)."""
     with each_flies_itself():

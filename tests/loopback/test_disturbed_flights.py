@@ -13,15 +13,13 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import Control, State
 from gcs.session import inputs
 from tests.loopback import pymavlink_decoder
-from tests.loopback.flight import PEER, PERSONALITIES, POLICIES, Flight, Personality
+from tests.loopback.flight import PEER, POLICIES, Flight, Personality
 from tests.loopback.lossy_link import Weather
 from vehicle_sim.simulation.world import Datagram
 
-both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 HOLDS = {"px4": "AUTO.LOITER", "ardupilot": "BRAKE"}
 
 
-@both_personalities
 def test_somebody_else_changes_the_mode(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     goal = flight.goto(20.0, 0.0, 3.0)
@@ -38,7 +36,6 @@ def test_somebody_else_changes_the_mode(personality: Personality) -> None:
     assert flight.is_in(State.HOVERING)
 
 
-@both_personalities
 @pytest.mark.parametrize(("kind", "state"), [("return", State.RETURNING), ("land", State.LANDING)])
 def test_somebody_else_sends_it_home_or_down(
     personality: Personality, kind: str, state: State
@@ -52,7 +49,6 @@ def test_somebody_else_sends_it_home_or_down(
     assert flight.setpoints(since_ns) == []
 
 
-@both_personalities
 def test_a_vehicle_that_goes_silent_and_comes_back(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     goal = flight.goto(20.0, 0.0, 3.0)
@@ -73,7 +69,6 @@ def test_a_vehicle_that_goes_silent_and_comes_back(personality: Personality) -> 
     assert flight.done(flight.goto(5.0, 0.0, 3.0)) == "complete"
 
 
-@both_personalities
 def test_garbage_and_oversize_datagrams_change_nothing_at_either_end(
     personality: Personality,
 ) -> None:
@@ -91,7 +86,6 @@ def test_garbage_and_oversize_datagrams_change_nothing_at_either_end(
     assert flight.garbage()
 
 
-@both_personalities
 def test_a_blocked_way_home_holds_and_landing_still_works(personality: Personality) -> None:
     """The vehicle's return height is far above the lab's cage."""
     flight = Flight(personality, policy=POLICIES["lab"]).hovering(1.0)
@@ -111,7 +105,6 @@ def test_a_blocked_way_home_holds_and_landing_still_works(personality: Personali
     assert flight.is_in(State.GROUNDED)
 
 
-@both_personalities
 def test_a_predicted_breach_is_braked_in_the_same_tick(personality: Personality) -> None:
     flight = Flight(personality, policy=POLICIES["lab"]).hovering(1.0)
     assert flight.done(flight.goto(3.0, 0.0, 1.0)) == "complete"
@@ -138,7 +131,6 @@ def test_a_predicted_breach_is_braked_in_the_same_tick(personality: Personality)
     assert flight.truth_enu()[0] < 3.0 + taken_m
 
 
-@both_personalities
 def test_a_position_that_jumps_is_held_and_verified_anew(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     goal = flight.goto(20.0, 0.0, 3.0)
@@ -175,7 +167,6 @@ def test_a_recorder_that_fails_is_a_condition_and_no_more() -> None:
     assert Condition.RECORDER_FAILED not in flight.conditions
 
 
-@both_personalities
 def test_a_bad_link_brings_a_flight_home_all_the_same(personality: Personality) -> None:
     rough = Weather(loss=0.1, duplicate=0.1, corrupt=0.03, delay_s=(0.005, 0.12))
     flight = Flight(personality, seed=5, up=rough, down=rough).hovering(3.0)
@@ -185,7 +176,6 @@ def test_a_bad_link_brings_a_flight_home_all_the_same(personality: Personality) 
     assert flight.is_in(State.GROUNDED)
 
 
-@both_personalities
 def test_what_was_asked_of_the_vehicle_in_vain_is_asked_again(personality: Personality) -> None:
     """Not one request of the first seconds arrives: no stream, no origin, no parameter."""
     flight = Flight(personality, up=Weather(loss=1.0))
@@ -197,7 +187,6 @@ def test_what_was_asked_of_the_vehicle_in_vain_is_asked_again(personality: Perso
     assert flight.done(flight.goto(2.0, 0.0, 2.0)) == "complete"
 
 
-@both_personalities
 def test_after_an_abort_no_further_try_of_an_arm_leaves(personality: Personality) -> None:
     flight = Flight(personality).connected()
     if personality == "ardupilot":  # which arms in GUIDED only, and is asked for that first
@@ -219,7 +208,6 @@ def test_after_an_abort_no_further_try_of_an_arm_leaves(personality: Personality
     assert not flight.vehicle.armed
 
 
-@both_personalities
 def test_after_a_hold_no_further_try_of_a_return_leaves(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     flight.up.weather = Weather(loss=1.0)
@@ -233,7 +221,6 @@ def test_after_a_hold_no_further_try_of_a_return_leaves(personality: Personality
     assert len(flight.sent_commands(176, held_ns)) >= 4
 
 
-@both_personalities
 def test_a_hold_that_nobody_answers_is_repeated_until_it_is_seen(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     flight.goto(100.0, 0.0, 3.0)
@@ -249,7 +236,6 @@ def test_a_hold_that_nobody_answers_is_repeated_until_it_is_seen(personality: Pe
     assert flight.vehicle.mode_name == HOLDS[personality]
 
 
-@both_personalities
 def test_after_a_blackout_of_the_link_no_stream_is_said_to_have_stopped(
     personality: Personality,
 ) -> None:

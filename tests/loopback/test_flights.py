@@ -9,15 +9,13 @@ import pytest
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.flight import PERSONALITIES, POLICIES, Flight, Personality
+from tests.loopback.flight import POLICIES, Flight, Personality
 from tests.loopback.lossy_link import Weather
 from vehicle_sim.autopilot.interface import Result
 
-both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 HOLDS = {"px4": "AUTO.LOITER", "ardupilot": "BRAKE"}
 
 
-@both_personalities
 def test_out_and_home_by_return(personality: Personality) -> None:
     flight = Flight(personality).hovering(5.0)
     assert flight.done(flight.goto(15.0, -8.0, 6.0)) == "complete"
@@ -30,7 +28,6 @@ def test_out_and_home_by_return(personality: Personality) -> None:
     flight.until(lambda: not flight.vehicle.armed)
 
 
-@both_personalities
 def test_land_where_it_is(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     assert flight.done(flight.goto(4.0, 4.0, 3.0)) == "complete"
@@ -43,7 +40,6 @@ def test_land_where_it_is(personality: Personality) -> None:
     assert flight.setpoints(landed_ns) == []
 
 
-@both_personalities
 def test_hold_stops_and_resume_hovers_there_the_goal_is_gone(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     goal = flight.goto(20.0, 0.0, 3.0)
@@ -62,7 +58,6 @@ def test_hold_stops_and_resume_hovers_there_the_goal_is_gone(personality: Person
     assert (0.0, 20.0, -3.0) not in {s.pos_ned for s in flight.setpoints(resumed_ns)}
 
 
-@both_personalities
 def test_two_pictures(personality: Personality) -> None:
     flight = Flight(personality).hovering(2.0)
     for _ in range(2):
@@ -71,7 +66,6 @@ def test_two_pictures(personality: Personality) -> None:
     assert flight.vehicle.images_captured == 2
 
 
-@both_personalities
 def test_a_vehicle_that_already_flies_is_external_until_control_is_taken(
     personality: Personality,
 ) -> None:
@@ -98,7 +92,6 @@ def test_a_vehicle_that_already_flies_is_external_until_control_is_taken(
     assert flight.done(flight.goto(1.0, 1.0, 6.0)) == "complete"
 
 
-@both_personalities
 def test_the_operator_is_lost_in_flight(personality: Personality) -> None:
     flight = Flight(personality).hovering(3.0)
     goal = flight.goto(20.0, 0.0, 3.0)

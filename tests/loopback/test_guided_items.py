@@ -16,7 +16,7 @@ from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, north_of_home, take_off
 from tests.loopback.copies import fly_or_copy
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.plan_clients import PlanFlight
 from tests.loopback.test_orbits import ORBIT
 
@@ -105,7 +105,6 @@ def test_an_item_outside_the_fence_is_denied_while_an_orbit_is_flown() -> None:
     assert refused(flight) == ["OUTSIDE_FENCE"]
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize("landing", [0, 1])
 def test_an_item_after_a_mode_that_is_flown_is_decided(
     personality: Personality, landing: int

@@ -7,13 +7,12 @@ import pytest
 from gcs.protocol.signing_setup import Ending, SigningSetup
 from gcs.wire.frame import Frame, split
 from gcs.wire.signing import SecretKey
-from tests.loopback.flight import PEER, PERSONALITIES, Flight, Personality
+from tests.loopback.flight import PEER, Flight, Personality
 from tests.loopback.lossy_link import CLEAR, Air, Weather
 from vehicle_sim.simulation.world import Datagram, Transmit, Wake
 
 KEY, OTHER = SecretKey(bytes(range(32))), SecretKey(bytes(32 * [7]))
 STEP_NS = 10_000_000
-both = pytest.mark.parametrize("personality", PERSONALITIES)
 LOSSY = Weather(loss=0.3, duplicate=0.1, delay_s=(0.001, 0.05))
 
 
@@ -51,7 +50,6 @@ def carried_out(
     return setup
 
 
-@both
 @pytest.mark.parametrize("weather", [CLEAR, LOSSY], ids=["clear", "30 % loss"])
 def test_a_key_comes_and_goes(personality: Personality, weather: Weather) -> None:
     flight = Flight(personality)
@@ -66,7 +64,6 @@ def test_a_key_comes_and_goes(personality: Personality, weather: Weather) -> Non
     assert carried_out(flight, None, OTHER, weather).had_it
 
 
-@both
 def test_an_armed_vehicle_is_left_as_it_is(personality: Personality) -> None:
     flight = Flight(personality).connected()
     flight.do("arm")

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from gcs.gate.states import State
-from tests.loopback.flight import MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
+from tests.loopback.flight import MISSIONS, POLICIES, Flight, Personality
 
 GOAL_ENU = (4.0, 1.0, 1.5)
 HOLDS = {"px4": "AUTO.LOITER", "ardupilot": "BRAKE"}
@@ -91,11 +91,9 @@ IN_THE_AIR: dict[State, Callable[[Flight], None]] = {
 }
 
 both_policies = pytest.mark.parametrize("policy", POLICIES)
-both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
 @both_policies
-@both_personalities
 @pytest.mark.parametrize("state", IN_THE_AIR)
 def test_L15_abort_in_the_air_holds_and_nothing_revives_the_goal(
     state: State, personality: Personality, policy: str
@@ -119,7 +117,6 @@ def test_L15_abort_in_the_air_holds_and_nothing_revives_the_goal(
 
 
 @both_policies
-@both_personalities
 @pytest.mark.parametrize(
     ("begin", "ended"),
     [(verifying, "superseded SUPERSEDED"), (moving, "aborted OPERATOR")],
@@ -145,7 +142,6 @@ def test_L15_an_arrival_after_the_abort_completes_nothing(
 
 
 @both_policies
-@both_personalities
 def test_L15_abort_on_the_ground_disarms(personality: Personality, policy: str) -> None:
     flight = Flight(personality, policy=POLICIES[policy]).connected()
     flight.do("arm")
@@ -163,7 +159,6 @@ def test_L15_abort_without_a_vehicle_is_refused() -> None:
 
 
 @both_policies
-@both_personalities
 def test_L15_abort_to_a_vehicle_that_went_silent_is_sent_all_the_same(
     personality: Personality, policy: str
 ) -> None:

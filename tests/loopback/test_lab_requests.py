@@ -12,9 +12,8 @@ from gcs.gate.states import State
 from gcs.report import DecisionItem, FsaItem
 from gcs.session import inputs
 from tests.loopback import pymavlink_decoder
-from tests.loopback.flight import PERSONALITIES, POLICIES, Flight, Personality, lab_policy
+from tests.loopback.flight import POLICIES, Flight, Personality, lab_policy
 
-both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 both_policies = pytest.mark.parametrize("policy", POLICIES)
 TICK_NS = 50_000_000
 
@@ -23,7 +22,6 @@ def in_the_cage(personality: Personality = "px4") -> Flight:
     return Flight(personality, policy=lab_policy()).hovering(1.0)
 
 
-@both_personalities
 def test_L01_hovering_streams_setpoints_at_20_hz_with_down_as_minus_up(
     personality: Personality,
 ) -> None:
@@ -64,7 +62,6 @@ def test_L02_movement_keys_send_nothing_and_log_one_line_a_change() -> None:
     assert typing.recorded(DecisionItem, since_ns) == []
 
 
-@both_personalities
 def test_L03_enter_is_one_request_then_verifying_then_moving(personality: Personality) -> None:
     flight = in_the_cage(personality)
     since_ns = flight.now_ns
@@ -88,7 +85,6 @@ def test_L03_enter_is_one_request_then_verifying_then_moving(personality: Person
 
 
 @both_policies
-@both_personalities
 def test_L05_a_second_request_while_moving_is_busy_and_never_flown(
     personality: Personality, policy: str
 ) -> None:
@@ -135,7 +131,6 @@ NONSENSE = [
 
 
 @pytest.mark.parametrize(("policy", "fence_on"), [("lab", True), ("lab", False), ("default", True)])
-@both_personalities
 def test_L11_what_is_no_number_is_refused_and_never_sent(
     personality: Personality, policy: str, fence_on: bool
 ) -> None:
@@ -154,7 +149,6 @@ def test_L11_what_is_no_number_is_refused_and_never_sent(
 
 
 @both_policies
-@both_personalities
 def test_L16_a_move_is_refused_while_a_picture_is_taken(
     personality: Personality, policy: str
 ) -> None:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import pytest
-
 from gcs.gate.states import State
 from tests.loopback.bridged import Client, joined
-from tests.loopback.flight import HOMES, PERSONALITIES, Personality
+from tests.loopback.flight import HOMES, Personality
 from tests.loopback.plan_clients import (
     ACCEPTED,
     NO_PLACE,
@@ -50,7 +48,6 @@ def on_its_way(personality: Personality, items: list[PlanItem]) -> tuple[PlanFli
     return flight, client
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_the_mission_lands_by_its_own_landing(personality: Personality) -> None:
     flight, client = on_its_way(personality, with_landing(personality))
     assert client.ask(LAND_START, within_s=20.0) == ACCEPTED
@@ -64,7 +61,6 @@ def test_the_mission_lands_by_its_own_landing(personality: Personality) -> None:
     assert abs(east_m) < 2.0
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_mission_without_the_marker_flies_on(personality: Personality) -> None:
     flight, client = on_its_way(personality, mission(personality, FAR))
     assert client.ask(LAND_START) == DENIED

@@ -161,7 +161,6 @@ def test_a_take_off_that_was_cancelled_is_not_begun_when_it_is_armed_again(wait_
     fly("ardupilot", 0, Answers(0.0, 1, 0.0), [("takeoff", 1.0), ("disarm", 6.0), ("arm", wait_s)])
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_station_that_goes_on_asking_is_found(
     personality: Personality, monkeypatch: pytest.MonkeyPatch
 ) -> None:

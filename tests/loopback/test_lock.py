@@ -15,7 +15,7 @@ from gcs.vehicle.parameters.failsafes import FENCE, FENCE_ACTION, findings, limi
 from gcs.wire.frame import Frame, split
 from gcs.wire.signing import SecretKey
 from tests.loopback.bridged import STATION, BridgedFlight
-from tests.loopback.flight import PEER, PERSONALITIES, Flight, Personality
+from tests.loopback.flight import PEER, Flight, Personality
 from tests.loopback.lossy_link import CLEAR, Air, Weather
 from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.simulation.world import Datagram, Transmit, Wake
@@ -91,7 +91,6 @@ def test_what_is_changed_is_told_and_a_second_time_nothing_is(
     assert [c.before for c in locked(flight, weather).changes] == [c.after for c in changes]
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_locked_vehicle_arms_for_the_bridge_and_for_nobody_else(
     personality: Personality,
 ) -> None:
@@ -214,7 +213,6 @@ def test_a_wider_fence_of_another_kind_that_only_reports_is_made_one() -> None:
     ]
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_with_a_fence_of_its_own_a_locked_vehicle_flies_at_once(personality: Personality) -> None:
     flight = BridgedFlight(personality, station_key=KEY.secret)
     assert locked(flight, locking=Locking(STATION[0], DEFAULT_FENCE)).ending is Ending.DONE

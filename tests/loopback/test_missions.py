@@ -151,7 +151,6 @@ def over_home(path: Path, personality: Personality, *rows: tuple[int, float, flo
     return path
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_speed_of_every_type_is_brought_on_board(
     personality: Personality, tmp_path: Path
 ) -> None:
@@ -190,7 +189,6 @@ east_m = 10
 """
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize("choice", ["refuse_exclusions", "warn"])
 def test_a_blocked_failsafe_return_is_refused_or_warned_of_and_uploaded(
     choice: str, personality: Personality, tmp_path: Path
@@ -234,7 +232,6 @@ def test_a_mission_is_verified_anew_from_where_it_starts() -> None:
     assert flight.done(flight.say("mission_start")) == "complete"
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_mission_that_was_stopped_is_flown_from_where_it_was_verified(
     personality: Personality,
 ) -> None:
@@ -327,7 +324,6 @@ def test_a_file_that_is_not_there_is_refused() -> None:
     assert flight.done(flight.say("mission_upload")) == "refused BAD_MISSION"
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_the_mission_mode_by_its_name_starts_the_mission_on_board(personality: Personality) -> None:
     flight = Flight(personality).hovering(2.0)
     flight.do("mission_upload", path=str(MISSIONS / "square.toml"))
@@ -337,7 +333,6 @@ def test_the_mission_mode_by_its_name_starts_the_mission_on_board(personality: P
     assert flight.done(ask_id, 240.0) == "complete"
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_the_mission_mode_by_its_name_is_refused_where_no_mission_is_on_board(
     personality: Personality,
 ) -> None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 
-import pytest
 from msgspec import structs
 from pymavlink.dialects.v20 import all as dialect
 
@@ -16,7 +15,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from gcs.wire.frame import Frame, split
 from tests.loopback.bridged import VEHICLE, Client
-from tests.loopback.flight import HOMES, PERSONALITIES, Personality
+from tests.loopback.flight import HOMES, Personality
 from tests.loopback.plan_clients import ACCEPTED, Mavsdk, PlanFlight, mission
 from tests.loopback.test_set_current import FIELD, MAST, flown, seq, shown, square, wait
 
@@ -89,7 +88,6 @@ def start_in_preparation(personality: Personality) -> tuple[LosesCurrent, Client
     return flight, client
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_no_mission_begins_by_a_way_that_was_verified_from_elsewhere(
     personality: Personality,
 ) -> None:
@@ -108,7 +106,6 @@ def test_no_mission_begins_by_a_way_that_was_verified_from_elsewhere(
     assert "mast" in client.texts()
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_way_that_is_clear_from_there_too_is_flown(personality: Personality) -> None:
     flight, _ = start_in_preparation(personality)
     flown_to(flight, *CLEAR[personality])

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import pytest
-
 from gcs.gate.states import State
 from tests.loopback.bridged import Client, north_of_home, take_off
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.plan_clients import Mavsdk, PlanFlight, mission
 
 ACCEPTED, TEMPORARILY_REJECTED = 0, 1
@@ -32,7 +30,6 @@ def refused_words(flight: PlanFlight) -> list[str]:
     return [item.word for item in refused]
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_the_mission_of_another_client_cannot_be_started(personality: Personality) -> None:
     flight, one, other = flown_mission(personality)
     assert other.ask(MISSION_START) == TEMPORARILY_REJECTED
@@ -43,7 +40,6 @@ def test_the_mission_of_another_client_cannot_be_started(personality: Personalit
     assert flight.is_in(State.FLYING_MISSION)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_who_has_lost_control_cannot_start_its_own_mission_again(personality: Personality) -> None:
     flight, one, other = flown_mission(personality)
     assert other.ask(CONTROL, 1, 1) == ACCEPTED
@@ -52,7 +48,6 @@ def test_who_has_lost_control_cannot_start_its_own_mission_again(personality: Pe
     assert flight.is_in(State.FLYING_MISSION), "flown on for the other one"
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_the_goal_of_another_client_cannot_be_asked_for(personality: Personality) -> None:
     flight = PlanFlight(personality)
     take_off(flight)

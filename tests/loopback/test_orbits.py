@@ -24,7 +24,7 @@ from gcs.record.writer import Recorder
 from gcs.session import inputs
 from tests.loopback.boxed_stream import taken_off
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, joined
-from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.loopback.flight import Flight, Personality
 from tests.loopback.observed import START_NS
 from tests.loopback.plan_clients import Mavsdk, PlanFlight, mission
 from tests.loopback.test_attitude_streams import blow
@@ -38,7 +38,6 @@ GLOBAL = 0
 UP_M = 10.0
 NORTH_40 = (0.0, 40.0)
 """East and north of home."""
-both = pytest.mark.parametrize("personality", PERSONALITIES)
 
 FIELD = CircleSpec(90.0, (0.0, 0.0), name="field", inclusion=True)
 TOWER = CircleSpec(3.0, (0.0, 25.0), name="tower", inclusion=False)
@@ -144,7 +143,6 @@ def circling(flight: BridgedFlight, centre: tuple[float, float], radius_m: float
 # --------------------------------------------------------------------------------- it is flown
 
 
-@both
 @pytest.mark.parametrize(
     ("radius_m", "speed_m_s"), [(20.0, 3.0), (-12.0, 2.0), (30.0, 7.0), (-2.0, 1.0)]
 )
@@ -174,7 +172,6 @@ def test_a_fast_px4_keeps_to_its_circle_too() -> None:
     assert max(abs(away - 50.0) for away in track.away_m) < 1.0
 
 
-@both
 def test_wind_does_not_push_it_off(personality: Personality) -> None:
     flight, client = flying(personality)
     blow(flight, 5.0, -3.0)
@@ -185,7 +182,6 @@ def test_wind_does_not_push_it_off(personality: Personality) -> None:
     assert "refused" not in client.texts()
 
 
-@both
 def test_as_command_long_about_a_place_above_sea_level(personality: Personality) -> None:
     """Degrees as float32 are up to 0.4 m off."""
     flight, client = flying(personality)
@@ -198,7 +194,6 @@ def test_as_command_long_about_a_place_above_sea_level(personality: Personality)
     assert track.places[-1][2] == pytest.approx(12.0, abs=0.5)
 
 
-@both
 def test_nothing_given_is_ten_metres_about_where_it_is(personality: Personality) -> None:
     flight, client = flying(personality)
     east_m, north_m, up_m = flight.truth_enu()
@@ -210,7 +205,6 @@ def test_nothing_given_is_ten_metres_about_where_it_is(personality: Personality)
     assert track.places[-1][2] == pytest.approx(up_m, abs=0.5)
 
 
-@both
 def test_what_is_not_given_is_as_it_is_flown(personality: Personality) -> None:
     flight, client = flying(personality)
     assert asked(client, -20.0, 4.0, centre=NORTH_40) == ACCEPTED
@@ -232,7 +226,6 @@ def test_what_is_not_given_is_as_it_is_flown(personality: Personality) -> None:
     assert len(endings) == 3, "the later ones; the first is flown on, as they have it"
 
 
-@both
 def test_a_number_of_turns_is_flown_and_then_it_hovers(personality: Personality) -> None:
     flight, client = flying(personality)
     assert asked(client, 10.0, 3.0, turn_rad=1.5 * math.tau, centre=(0.0, 10.0)) == ACCEPTED
@@ -250,7 +243,6 @@ NOSES = [(0.0, math.pi), (NAN, math.pi), (3.0, 0.5 * math.pi)]
 """ORBIT_YAW_BEHAVIOUR, and where the nose points from the bearing of the vehicle, clockwise."""
 
 
-@both
 @pytest.mark.parametrize(("behaviour", "from_bearing_rad"), NOSES)
 def test_the_nose(personality: Personality, behaviour: float, from_bearing_rad: float) -> None:
     flight, client = flying(personality)
@@ -267,7 +259,6 @@ def test_the_nose(personality: Personality, behaviour: float, from_bearing_rad: 
         assert abs(math.degrees(off_rad)) < 8.0
 
 
-@both
 def test_the_nose_as_it_was(personality: Personality) -> None:
     flight, client = flying(personality)
     assert flight.session.telemetry is not None
@@ -280,7 +271,6 @@ def test_the_nose_as_it_was(personality: Personality) -> None:
         assert abs(math.degrees(turned)) < 8.0
 
 
-@both
 def test_who_asked_is_told_twice_a_second_what_is_flown(personality: Personality) -> None:
     flight, client = flying(personality)
     other = flight.join(246)
@@ -297,7 +287,6 @@ def test_who_asked_is_told_twice_a_second_what_is_flown(personality: Personality
     assert not other.messages("ORBIT_EXECUTION_STATUS")
 
 
-@both
 def test_too_fast_is_flown_slower_and_told(personality: Personality) -> None:
     flight, client = flying(personality)
     assert asked(client, 8.0, 9.0, centre=(0.0, 8.0)) == ACCEPTED
@@ -324,7 +313,6 @@ def refused(flight: BridgedFlight, client: Client, *words: str) -> None:
     assert [item.outcome for item in flight.decisions() if item.word == "orbit"] == ["refused"]
 
 
-@both
 def test_one_that_leaves_the_fence_is_refused_with_the_finding(personality: Personality) -> None:
     """The nearest point of the circle is inside; 40 m + 60 m is not."""
     flight, client = flying(personality, structs.replace(DEFAULT, fence=(FIELD,)))
@@ -335,7 +323,6 @@ def test_one_that_leaves_the_fence_is_refused_with_the_finding(personality: Pers
     assert decision.numbers["outside_m"] == pytest.approx(10.0, abs=0.5)
 
 
-@both
 def test_one_round_a_tower_is_flown(personality: Personality) -> None:
     policy = structs.replace(DEFAULT, fence=(FIELD, TOWER))
     flight, client = flying(personality, policy)
@@ -347,7 +334,6 @@ def test_one_round_a_tower_is_flown(personality: Personality) -> None:
     assert "refused" not in client.texts()
 
 
-@both
 def test_one_without_room_to_stop_is_refused_and_a_slower_one_flown(
     personality: Personality,
 ) -> None:
@@ -358,7 +344,6 @@ def test_one_without_room_to_stop_is_refused_and_a_slower_one_flown(
     assert asked(client, 42.0, 2.0, centre=NORTH_40) == ACCEPTED
 
 
-@both
 def test_another_client_is_refused_and_changes_nothing(personality: Personality) -> None:
     flight, client = flying(personality)
     other = flight.join(246)
@@ -371,7 +356,6 @@ def test_another_client_is_refused_and_changes_nothing(personality: Personality)
     assert max(abs(away - 20.0) for away in track.away_m) < 0.6
 
 
-@both
 def test_while_a_mission_is_flown_it_is_refused_as_a_goto_is(personality: Personality) -> None:
     flight, client = joined(PlanFlight(personality))
     items = mission(personality, (60.0, 0.0, 10.0))
@@ -403,7 +387,6 @@ def told_no_more(flight: BridgedFlight, client: Client) -> None:
     assert not flight.is_in(State.STREAMING)
 
 
-@both
 def test_pause_ends_it_and_an_orbit_after_it_resumes(personality: Personality) -> None:
     flight, client = orbiting(personality)
     assert client.ask(PAUSE, 0.0) == ACCEPTED
@@ -416,7 +399,6 @@ def test_pause_ends_it_and_an_orbit_after_it_resumes(personality: Personality) -
     assert max(abs(away - 15.0) for away in track.away_m) < 0.6
 
 
-@both
 @pytest.mark.parametrize(("command", "state"), [(RTL, State.RETURNING), (LAND, State.LANDING)])
 def test_return_and_landing_end_it(personality: Personality, command: int, state: State) -> None:
     flight, client = orbiting(personality)
@@ -426,7 +408,6 @@ def test_return_and_landing_end_it(personality: Personality, command: int, state
     told_no_more(flight, client)
 
 
-@both
 def test_a_goto_ends_it(personality: Personality) -> None:
     flight, client = orbiting(personality)
     lat_deg, lon_deg = lat_lon(flight, (10.0, 10.0))
@@ -437,7 +418,6 @@ def test_a_goto_ends_it(personality: Personality) -> None:
     assert math.dist(flight.truth_enu(), (10.0, 10.0, UP_M)) < 1.0
 
 
-@both
 def test_a_client_that_falls_silent_is_held(personality: Personality) -> None:
     flight, _ = orbiting(personality)
     flight.run(8.5)
@@ -446,7 +426,6 @@ def test_a_client_that_falls_silent_is_held(personality: Personality) -> None:
     assert flight.is_in(State.HOLDING)
 
 
-@both
 def test_setpoints_of_its_own_are_flown_instead(personality: Personality) -> None:
     flight, client = orbiting(personality)
     before = flight.truth_enu()
@@ -469,7 +448,6 @@ def test_setpoints_of_its_own_are_flown_instead(personality: Personality) -> Non
     told_no_more(flight, client)
 
 
-@both
 def test_who_gives_control_up_ends_it(personality: Personality) -> None:
     flight, client = orbiting(personality)
     assert client.ask(RELEASE, 0.0) == ACCEPTED
@@ -478,7 +456,6 @@ def test_who_gives_control_up_ends_it(personality: Personality) -> None:
     told_no_more(flight, client)
 
 
-@both
 def test_lost_positions_interrupt_it_and_it_goes_on(personality: Personality) -> None:
     flight, _ = orbiting(personality)
     flight.positions_lost = True
@@ -491,7 +468,6 @@ def test_lost_positions_interrupt_it_and_it_goes_on(personality: Personality) ->
     assert max(abs(away - 15.0) for away in track.away_m) < 0.8
 
 
-@both
 def test_an_operator_of_the_station_orbits_by_json(personality: Personality) -> None:
     flight = Flight(personality).hovering(5.0)
     circle = ipc.Circle((0.0, 20.0, 8.0), -10.0, 3.0, 1.0, "along")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.random_missions import fly
 
 CHUNKS = 25
@@ -16,7 +16,6 @@ WITH_STATION = 1
 chunks = [pytest.param(chunk, marks=[pytest.mark.soak] if chunk else []) for chunk in range(CHUNKS)]
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize("chunk", chunks)
 def test_a_cleared_random_mission_stays_inside_and_outside_as_verified(
     chunk: int, personality: Personality

@@ -12,7 +12,7 @@ from gcs.gate.states import State
 from gcs.report import DecisionItem
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, flying, joined
 from tests.loopback.fleet import Fleet
-from tests.loopback.flight import HOMES, PERSONALITIES, Personality
+from tests.loopback.flight import HOMES, Personality
 from tests.loopback.plan_clients import NORTH_DEG
 from tests.loopback.test_bridge_streams import in_control, velocity
 from tests.loopback.test_mission_mode_then_arm import with_mission
@@ -55,7 +55,6 @@ def told_to_hold(flight: BridgedFlight) -> None:
     assert in_control(flight) == 0
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize("stream", [northward, sticks])
 def test_its_stream_is_over_and_goes_on_for_nobody(
     personality: Personality, stream: Callable[[Client, int], None]
@@ -74,7 +73,6 @@ def test_its_stream_is_over_and_goes_on_for_nobody(
     assert in_control(flight) == 0
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_its_goal_is_given_up_and_the_next_one_in_control_flies_on(
     personality: Personality,
 ) -> None:
@@ -99,7 +97,6 @@ def test_its_goal_is_given_up_and_the_next_one_in_control_flies_on(
     assert flight.truth_enu()[1] == pytest.approx(60.0, abs=1.5)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_its_mission_is_broken_off(personality: Personality) -> None:
     flight, client = with_mission(personality)
     assert client.ask(ARM, 1, within_s=10) == ACCEPTED
@@ -111,7 +108,6 @@ def test_its_mission_is_broken_off(personality: Personality) -> None:
     rests(flight)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_what_comes_down_goes_on(personality: Personality) -> None:
     flight, client = flying(personality)
     assert client.ask(LAND) == ACCEPTED
@@ -131,7 +127,6 @@ def test_every_vehicle_that_it_flew_is_held() -> None:
         flight.reaches(number, State.HOLDING, 2)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_stream_ends_in_its_place_when_another_client_takes_over(
     personality: Personality,
 ) -> None:
@@ -152,7 +147,6 @@ def test_a_stream_ends_in_its_place_when_another_client_takes_over(
     assert flight.truth_enu()[1] < before[1] - 2.0
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_goal_is_flown_on_when_another_client_takes_over(personality: Personality) -> None:
     flight, client = flying(personality)
     other = flight.join(246)

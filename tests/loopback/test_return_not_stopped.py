@@ -11,7 +11,7 @@ from gcs.gate.condition import Condition
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from tests.loopback.bridged import ACCEPTED, Client, north_of_home, take_off
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.plan_clients import PlanFlight
 from tests.loopback.test_bridge_meaning import (
     GUIDED,
@@ -45,7 +45,6 @@ def returning(personality: Personality) -> tuple[PlanFlight, Client]:
 
 
 @pytest.mark.parametrize("asked", ["guided", "mission"])
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_refused_request_leaves_the_return_as_it_is(personality: Personality, asked: str) -> None:
     flight, client = returning(personality)
     since_ns = flight.now_ns
@@ -60,7 +59,6 @@ def test_a_refused_request_leaves_the_return_as_it_is(personality: Personality, 
     assert math.hypot(*flight.truth_enu()[:2]) < 2.0
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_hold_is_not_refused(personality: Personality) -> None:
     flight, client = returning(personality)
     hold = (129.0, 4.0, 3.0) if personality == "px4" else (129.0, 17.0, 0.0)

@@ -16,7 +16,7 @@ from gcs.gate.policy.parse import parse_policy
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import State
 from tests.loopback.bridged import VEHICLE, Client
-from tests.loopback.flight import HOMES, PERSONALITIES, Personality
+from tests.loopback.flight import HOMES, Personality
 from tests.loopback.plan_clients import (
     ACCEPTED,
     NORTH_DEG,
@@ -120,7 +120,6 @@ def refused(flight: PlanFlight, client: Client) -> None:
     clears_the_mast(flight, ON_THE_WAY, 20.0)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_zone_on_the_way_to_the_rally_point_refuses_it(personality: Personality) -> None:
     flight = joined(personality)
     bring(flight, personality)
@@ -142,7 +141,6 @@ NEAR_THE_MAST_M = 54.0
 """Outside the mast by a metre, and within the margin."""
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 @pytest.mark.parametrize(
     ("north_m", "says"),
     [(50.0, "is inside"), (NEAR_THE_MAST_M, "margin"), (300.0, "m outside")],
@@ -164,7 +162,6 @@ def test_rally_points_where_nobody_may_land_never_reach_the_vehicle(
     assert ("mast" in line) is (north_m != 300.0)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_points_on_board_where_nobody_may_land_are_told_once_when_they_are_read(
     personality: Personality,
 ) -> None:
@@ -177,7 +174,6 @@ def test_points_on_board_where_nobody_may_land_are_told_once_when_they_are_read(
     assert "mast" in told[0]
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_where_all_ways_are_clear_it_returns_to_the_rally_point(personality: Personality) -> None:
     flight = joined(personality, BESIDE_IT)
     bring(flight, personality)
@@ -187,7 +183,6 @@ def test_where_all_ways_are_clear_it_returns_to_the_rally_point(personality: Per
     assert math.dist(flight.truth_enu()[:2], (0.0, RALLY_NORTH_M)) < 3.0
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_points_that_were_on_board_before_are_read(personality: Personality) -> None:
     """Put there by another station, before this one had heard the vehicle."""
     flight = PlanFlight(personality, policy=with_mast(ON_THE_WAY))
@@ -197,7 +192,6 @@ def test_points_that_were_on_board_before_are_read(personality: Personality) -> 
     refused(flight, behind_the_mast(flight, personality))
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_points_that_another_station_brings_in_flight_are_read_again(
     personality: Personality,
 ) -> None:
@@ -208,7 +202,6 @@ def test_points_that_another_station_brings_in_flight_are_read_again(
     refused(flight, client)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_points_brought_and_cleared_in_flight_count_at_once(personality: Personality) -> None:
     flight = joined(personality)
     client = behind_the_mast(flight, personality)
@@ -221,7 +214,6 @@ def test_points_brought_and_cleared_in_flight_count_at_once(personality: Persona
     assert math.dist(flight.truth_enu()[:2], (0.0, 0.0)) < 3.0
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_while_points_are_on_their_way_no_return_is_cleared(personality: Personality) -> None:
     """From the first message that may change them, until they are read back."""
     flight = joined(personality)
@@ -250,7 +242,6 @@ def test_a_return_along_the_mission_is_refused_with_its_type() -> None:
     assert "land instead" in client.texts()
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_rally_point_as_a_single_message_makes_them_be_read_again(
     personality: Personality,
 ) -> None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import pytest
 from msgspec import structs
 
 from gcs.gate.policy.parse import DEFAULT
@@ -16,7 +15,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.policy.zonespec import CircleSpec
 from gcs.gate.states import State
 from tests.loopback.bridged import Client, joined
-from tests.loopback.flight import HOMES, PERSONALITIES, Personality
+from tests.loopback.flight import HOMES, Personality
 from tests.loopback.plan_clients import ACCEPTED, NORTH_DEG, Mavsdk, PlanFlight, mission
 from vehicle_sim.autopilot.firmware import Firmware
 
@@ -102,7 +101,6 @@ def least_m(flight: PlanFlight, place: tuple[float, float], seconds: float) -> f
     return nearest_m
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_mission_that_is_flown_goes_on_at_the_item_that_a_client_names(
     personality: Personality,
 ) -> None:
@@ -117,7 +115,6 @@ def test_a_mission_that_is_flown_goes_on_at_the_item_that_a_client_names(
     assert asked == ["hold", "resume", "mission_set_current", "mission_start"]
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_the_way_to_the_item_is_verified_from_where_the_vehicle_stopped(
     personality: Personality,
 ) -> None:
@@ -129,7 +126,6 @@ def test_the_way_to_the_item_is_verified_from_where_the_vehicle_stopped(
     assert not flight.is_in(State.FLYING_MISSION)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_an_item_that_is_not_there_stops_nothing(personality: Personality) -> None:
     flight = flown(with_square(personality))
     assert flight.clients[1].ask(SET_CURRENT, 9) == DENIED
@@ -137,7 +133,6 @@ def test_an_item_that_is_not_there_stops_nothing(personality: Personality) -> No
     assert "there is no item 9" in flight.clients[1].texts()
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_before_a_start_in_the_air_it_says_where_the_mission_begins_once(
     personality: Personality,
 ) -> None:
@@ -158,7 +153,6 @@ def test_before_a_start_in_the_air_it_says_where_the_mission_begins_once(
     wait(flight, lambda: shown(flight) <= first, 10.0)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_item_0_is_the_first_item_and_is_answered_at_once(personality: Personality) -> None:
     """Item 0 is home for an ArduPilot, which goes on to the item after it."""
     flight = with_square(personality)
@@ -179,7 +173,6 @@ def test_an_arducopter_that_flies_its_mission_begins_it_anew_by_item_0() -> None
     assert shown(flight) in (1, 2)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_on_the_ground_a_mission_begins_with_its_first_item(personality: Personality) -> None:
     flight = with_square(personality)
     client = flight.clients[1]
@@ -189,7 +182,6 @@ def test_on_the_ground_a_mission_begins_with_its_first_item(personality: Persona
     assert not flight.is_in(State.FLYING_MISSION)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_an_arducopter_may_begin_anew_by_its_own_setting_so_all_of_it_must_clear(
     personality: Personality,
 ) -> None:

@@ -17,7 +17,7 @@ from gcs.report import FramesItem
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
 from tests.loopback import pymavlink_decoder
-from tests.loopback.flight import PEER, PERSONALITIES, Flight, Personality
+from tests.loopback.flight import PEER, Flight, Personality
 from tests.loopback.lossy_link import CLEAR, Weather
 from tests.loopback.observed import START_NS
 from vehicle_sim.services.profile import profile_of
@@ -26,7 +26,6 @@ from vehicle_sim.simulation.world import Datagram as Inbound
 from vehicle_sim.simulation.world import LinkSpec, SigningKey, Transmit, World
 
 KEY, OTHER = bytes(range(32)), bytes(32 * [7])
-both = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
 def signed(
@@ -42,7 +41,6 @@ def flown(flight: Flight, up_m: float = 1.0) -> Flight:
     return flight
 
 
-@both
 def test_with_the_key_it_flies_and_every_frame_either_way_is_signed(
     personality: Personality,
 ) -> None:
@@ -54,7 +52,6 @@ def test_with_the_key_it_flies_and_every_frame_either_way_is_signed(
     assert flight.garbage() == []
 
 
-@both
 def test_over_a_bad_link_it_flies_as_well(personality: Personality) -> None:
     bad = Weather(loss=0.05, duplicate=0.05, corrupt=0.02, delay_s=(0.001, 0.03))
     flight = signed(personality, up=bad, down=bad)
@@ -63,7 +60,6 @@ def test_over_a_bad_link_it_flies_as_well(personality: Personality) -> None:
     assert {g.reason for g in flight.garbage()} >= {"replayed"}
 
 
-@both
 @pytest.mark.parametrize(
     ("station_key", "why", "hint"),
     [
@@ -87,7 +83,6 @@ def test_a_vehicle_that_signs_otherwise_is_none_and_the_operator_is_told_why(
     assert flight.outcome(flight.say("arm")) == "refused NO_VEHICLE"
 
 
-@both
 def test_without_a_key_the_operator_is_told_that_the_vehicle_signs(
     personality: Personality,
 ) -> None:
@@ -143,7 +138,6 @@ def test_a_forged_position_is_nobody_s_and_the_record_says_who_tried(key: bytes 
     assert "refused: 1/1 LOCAL_POSITION_NED" in line
 
 
-@both
 @pytest.mark.parametrize("key", [None, OTHER], ids=["unsigned", "another key"])
 def test_who_goes_round_the_station_gets_nothing(
     personality: Personality, key: bytes | None
@@ -162,7 +156,6 @@ def test_who_goes_round_the_station_gets_nothing(
 ANSWERS = {"COMMAND_ACK", "MISSION_ACK", "MISSION_REQUEST_INT", "MISSION_COUNT", "PARAM_VALUE"}
 
 
-@both
 @pytest.mark.parametrize("seed", range(3))
 def test_what_was_sent_once_changes_nothing_a_second_time(
     personality: Personality, seed: int
@@ -200,7 +193,6 @@ def _played_back(flight: Flight, dice: random.Random, times: int) -> None:
 # ------------------------------------------------------------------------------- the record
 
 
-@both
 def test_the_audit_reproduces_a_signed_flight_and_sees_what_was_altered(
     personality: Personality, monkeypatch: pytest.MonkeyPatch
 ) -> None:

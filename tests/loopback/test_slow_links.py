@@ -14,7 +14,7 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.states import State
 from gcs.session import inputs
 from gcs.wire.frame import Frame, split
-from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.loopback.flight import Flight, Personality
 from tests.loopback.lossy_link import Weather
 
 SLOW = Weather(delay_s=(1.5, 1.5))
@@ -35,7 +35,6 @@ def away_from_home(personality: Personality) -> Flight:
 
 
 @pytest.mark.parametrize(("word", "from_home_m"), [("land", AWAY_M), ("rtl", 0.0)])
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_it_comes_down_on_a_link_with_a_round_trip_of_three_seconds(
     personality: Personality, word: str, from_home_m: float
 ) -> None:
@@ -65,7 +64,6 @@ class WithoutAnswers(Flight):
 
 
 @pytest.mark.parametrize("word", ["land", "rtl"])
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_it_comes_down_though_every_answer_is_lost(personality: Personality, word: str) -> None:
     """The heartbeat shows the mode, and that is enough."""
     flight = WithoutAnswers(personality)
@@ -76,7 +74,6 @@ def test_it_comes_down_though_every_answer_is_lost(personality: Personality, wor
     assert not {"HOLDING", "EXTERNAL"} & set(flight.states(since_ns))
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_hold_that_is_asked_for_meanwhile_is_not_landed_out_of(personality: Personality) -> None:
     """No try of the landing leaves after the hold, and those before it are older than it."""
     flight = away_from_home(personality)

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from gcs.gate.states import State
-from tests.loopback.flight import PERSONALITIES, Flight, Personality
+from tests.loopback.flight import Flight, Personality
 
 TAKEOFF_ENDS_LOW_M = 0.5
 """NAV_MC_ALT_RAD, 0.8 m, is how much PX4 1.14 may leave; recorded were 0.3 to 0.7 m."""
@@ -65,7 +65,6 @@ def test_a_plan_whose_take_off_has_a_pitch_is_flown(tmp_path: Path) -> None:
     flight.do("mission_upload", path=str(path))
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_arm_waits_for_a_vehicle_that_starts_up(personality: Personality) -> None:
     """Asked 10 s after power-up."""
     flight = Flight(personality, boot="real")

@@ -18,7 +18,7 @@ from gcs.gate.states import State
 from tests.loopback.boxed_stream import BoxedStream, box_fence, taken_off
 from tests.loopback.bridged import VEHICLE, BridgedFlight, Client, joined
 from tests.loopback.fleet import Fleet
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from vehicle_sim.simulation.fault_script import fault_of
 
 ACCEPTED, DENIED = 0, 2
@@ -33,8 +33,6 @@ POSITION_ONLY, VELOCITY_AND_RATE = 3576, 1479
 """POSITION_TARGET_TYPEMASK: what is ignored."""
 POSITION_MODE = {"px4": (1.0, 3.0), "ardupilot": (1.0, 5.0)}
 """POSCTL; LOITER."""
-
-both = pytest.mark.parametrize("personality", PERSONALITIES)
 
 
 class Joystick(BoxedStream):
@@ -96,7 +94,6 @@ def no_stick_was_forwarded(flight: BridgedFlight) -> bool:
     return not flight.to_vehicle("MANUAL_CONTROL") and not flight.to_vehicle("RC_CHANNELS_OVERRIDE")
 
 
-@both
 @pytest.mark.parametrize(
     "sticks",
     [
@@ -131,7 +128,6 @@ def test_full_stick_at_the_fence_is_held_inside_and_flown_back(
     assert math.dist(flight.truth_enu(), held) > 1.5
 
 
-@both
 def test_sticks_move_the_vehicle_as_in_its_position_mode(personality: Personality) -> None:
     """Half forward, then a quarter turn to the right: the nose comes round, clockwise."""
     flight, _, joystick = flying(personality)
@@ -147,7 +143,6 @@ def test_sticks_move_the_vehicle_as_in_its_position_mode(personality: Personalit
     assert 40.0 < turned_deg < 100.0
 
 
-@both
 def test_released_sticks_hold_the_place_and_a_goto_flies_then(personality: Personality) -> None:
     flight, client, joystick = flying(personality)
     joystick.fly(0.2)
@@ -175,7 +170,6 @@ def goes_to(flight: BridgedFlight, client: Client, north_m: float) -> None:
     client.fly_to(lat + north_m / 111_319.5, lon, alt + 10.0)
 
 
-@both
 def test_a_goto_flies_beside_sticks_in_the_middle(personality: Personality) -> None:
     flight, client, joystick = flying(personality)
     since_ns = flight.now_ns
@@ -193,7 +187,6 @@ def test_a_goto_flies_beside_sticks_in_the_middle(personality: Personality) -> N
     assert not flight.decisions("refused")
 
 
-@both
 @pytest.mark.parametrize("policy", [POLICY, REPLACE], ids=["refuse", "replace"])
 def test_a_stick_during_a_goto_is_a_stream_by_the_policys_retarget(
     personality: Personality, policy: Policy
@@ -211,7 +204,6 @@ def test_a_stick_during_a_goto_is_a_stream_by_the_policys_retarget(
     assert client.texts().count("stream: refused BUSY") == 1
 
 
-@both
 def test_on_the_ground_no_stick_arms_or_takes_off(personality: Personality) -> None:
     """Neither as PX4's stick gesture, nor as ArduPilot's: the throttle down and the yaw right."""
     flight, client = ready(personality)
@@ -229,7 +221,6 @@ def test_on_the_ground_no_stick_arms_or_takes_off(personality: Personality) -> N
     assert no_stick_was_forwarded(flight)
 
 
-@both
 def test_a_throttle_left_at_its_bottom_does_not_bring_it_down(personality: Personality) -> None:
     """A transmitter's throttle has no spring: after a take-off it must be brought to its middle."""
     flight, client, joystick = flying(personality)
@@ -243,7 +234,6 @@ def test_a_throttle_left_at_its_bottom_does_not_bring_it_down(personality: Perso
     assert flight.truth_enu()[2] < up_m - 0.5
 
 
-@both
 def test_a_joystick_that_is_lost_is_held_within_the_deadmans_time(
     personality: Personality,
 ) -> None:
@@ -261,7 +251,6 @@ def test_a_joystick_that_is_lost_is_held_within_the_deadmans_time(
     assert speed_m_s(flight) < 0.5
 
 
-@both
 def test_a_joystick_of_who_is_not_in_control_is_refused_once(personality: Personality) -> None:
     flight, client, _ = flying(personality)
     other = flight.join(255, 190)
@@ -279,7 +268,6 @@ def test_a_joystick_of_who_is_not_in_control_is_refused_once(personality: Person
     assert masks(flight, since_ns) == {POSITION_ONLY}
 
 
-@both
 def test_sticks_in_the_middle_take_control_from_nobody(personality: Personality) -> None:
     flight, client = ready(personality)
     Joystick(flight, client).fly(3.0)
@@ -288,7 +276,6 @@ def test_sticks_in_the_middle_take_control_from_nobody(personality: Personality)
     assert other.ask(ARM, 1, within_s=10) == ACCEPTED
 
 
-@both
 def test_the_position_mode_is_flown_by_the_gate(personality: Personality) -> None:
     """QGroundControl's Position, or Loiter, out of a goto; and after a hold."""
     flight, client, joystick = flying(personality)
@@ -331,7 +318,6 @@ def test_a_px4_set_to_posctl_on_the_ground_arms_and_takes_off() -> None:
     assert flight.is_in(State.STREAMING)
 
 
-@both
 def test_a_stick_leaves_no_hold(personality: Personality) -> None:
     """Somebody has stopped the vehicle: a stick that is pushed on does not fly it again."""
     flight, client, joystick = flying(personality)
@@ -368,7 +354,6 @@ def test_overridden_channels_fly_an_ardupilot() -> None:
     assert no_stick_was_forwarded(flight)
 
 
-@both
 def test_no_stick_and_no_channel_of_a_client_reaches_the_vehicle(personality: Personality) -> None:
     flight, client, _ = flying(personality)
     for z in (500, 0):  # the middle, and the throttle closed

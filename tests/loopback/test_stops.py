@@ -12,10 +12,8 @@ from gcs.report import LogEvent
 from gcs.session import inputs
 from gcs.session.requests import FIRST
 from gcs.wire.frame import Frame, split
-from tests.loopback.flight import PERSONALITIES, Flight, Personality, lab_policy
+from tests.loopback.flight import Flight, Personality, lab_policy
 from tests.loopback.lossy_link import Weather
-
-both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 
 DO_SET_MODE, LAND = 176, 21
 HOLD_MODE = {"px4": "AUTO.LOITER", "ardupilot": "BRAKE"}
@@ -36,7 +34,6 @@ class WithoutHeartbeats(Flight):
         super().feed(given)
 
 
-@both_personalities
 def test_a_vehicle_whose_heartbeats_alone_are_lost_is_not_lost(personality: Personality) -> None:
     """autopilots.md 7."""
     flight = WithoutHeartbeats(personality)
@@ -49,7 +46,6 @@ def test_a_vehicle_whose_heartbeats_alone_are_lost_is_not_lost(personality: Pers
     assert flight.is_in(State.HOVERING)
 
 
-@both_personalities
 @pytest.mark.parametrize("word", ["hold", "abort"])
 def test_at_cruise_it_is_complete_when_the_hold_is_seen(
     personality: Personality, word: str
@@ -71,7 +67,6 @@ def test_at_cruise_it_is_complete_when_the_hold_is_seen(
     assert flight.session.telemetry.mode_name == HOLD_MODE[personality]
 
 
-@both_personalities
 def test_a_hold_that_is_not_seen_is_asked_for_again_and_complete_when_it_is(
     personality: Personality,
 ) -> None:
@@ -117,7 +112,6 @@ def test_who_quits_holds_a_vehicle_that_is_not_heard_any_more() -> None:
     assert flight.vehicle.mode_name == "BRAKE"
 
 
-@both_personalities
 @pytest.mark.parametrize("delay_s", [0.0, 2.0])
 def test_who_leaves_does_not_cancel_a_return(personality: Personality, delay_s: float) -> None:
     """newcomer.md 8: `gcs rtl --wait 2`."""
@@ -132,7 +126,6 @@ def test_who_leaves_does_not_cancel_a_return(personality: Personality, delay_s: 
     assert flight.vehicle.mode_name == RETURN_MODE[personality]
 
 
-@both_personalities
 def test_a_goto_during_a_return_that_is_not_ours_says_what_to_do(personality: Personality) -> None:
     """autopilots.md 12."""
     flight = Flight(personality).hovering(3.0)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 
-import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.gate.states import State
 from tests.loopback.bridged import VEHICLE, Client, take_off
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from tests.loopback.plan_clients import PlanFlight
 
 ACCEPTED, IN_PROGRESS = 0, 5
@@ -40,7 +39,6 @@ def finals(client: Client) -> Counter[int]:
     return Counter(ack.command for ack in acks if ack.result != IN_PROGRESS)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_nine_commands_in_one_datagram_have_nine_answers(personality: Personality) -> None:
     """Also of a client that is not in control: what it may not do stands between its stops."""
     flight, one = hovering(personality)
@@ -63,7 +61,6 @@ def test_nine_commands_in_one_datagram_have_nine_answers(personality: Personalit
         assert finals(client) == Counter(int(command) for command, *_ in commands)
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_a_stop_that_is_asked_for_twice_is_never_told_to_be_refused(
     personality: Personality,
 ) -> None:

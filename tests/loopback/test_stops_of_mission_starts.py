@@ -7,7 +7,7 @@ import pytest
 from gcs import ipc
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.flight import MISSIONS, PERSONALITIES, Flight, Personality
+from tests.loopback.flight import MISSIONS, Flight, Personality
 from tests.loopback.lossy_link import Weather
 
 SLOW = Weather(delay_s=(0.1, 0.1))
@@ -34,7 +34,6 @@ def never_starts(flight: Flight, since_ns: int) -> None:
 
 
 @pytest.mark.parametrize("word", ["abort", "hold", "land", "rtl", "abort_on_ground"])
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_no_mission_begins_after_a_stop(personality: Personality, word: str) -> None:
     flight, ask = preparing(personality, word)
     since_ns = flight.now_ns

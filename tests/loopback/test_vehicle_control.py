@@ -5,13 +5,12 @@ pymavlink 2.4.50 lacks the protocol; the other station's commands go by number.
 
 from __future__ import annotations
 
-import pytest
 from pymavlink.dialects.v20 import all as dialect
 
 from gcs.exit_codes import ExitCode
 from gcs.gate.states import State
 from gcs.session import inputs
-from tests.loopback.flight import MISSIONS, PERSONALITIES, Flight, Personality
+from tests.loopback.flight import MISSIONS, Flight, Personality
 from vehicle_sim.simulation.world import Datagram
 
 CONTROL = 32100
@@ -35,7 +34,6 @@ def owner(flight: Flight) -> int:
     return control.owner
 
 
-@pytest.mark.parametrize("personality", PERSONALITIES)
 def test_the_station_asks_for_control_before_it_commands(personality: Personality) -> None:
     flight = Flight(personality, operator_control=True).connected()
     assert owner(flight) == 0, "who only looks takes no control"

@@ -18,11 +18,10 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import Control, State
 from tests.loopback.checked_flight import CheckedFlight
-from tests.loopback.flight import PERSONALITIES, Personality
+from tests.loopback.flight import Personality
 from vehicle_sim.plant.sensors import SensorGrade
 from vehicle_sim.simulation.fault_script import AnyFault, fault_of
 
-both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 ORIGIN = 49  # GPS_GLOBAL_ORIGIN
 REQUEST_MESSAGE = 512
 
@@ -66,7 +65,6 @@ def severities(flight: CheckedFlight, since_ns: int) -> set[str]:
 
 
 @pytest.mark.parametrize("seed", [1, 3, 5])
-@both_personalities
 def test_gps_lost_is_the_vehicles_landing_and_the_station_lets_it(
     personality: Personality, seed: int
 ) -> None:
@@ -142,7 +140,6 @@ def test_px4s_own_failsafe_comes_before_the_reset() -> None:
         assert math.dist(flight.truth_enu()[:2], at_enu[:2]) < 5.0
 
 
-@both_personalities
 @pytest.mark.parametrize("by_s", [7.0, -4.0])
 def test_a_clock_that_jumps_is_a_hold_and_the_origin_is_asked_for_again(
     personality: Personality, by_s: float
@@ -164,7 +161,6 @@ def test_a_clock_that_jumps_is_a_hold_and_the_origin_is_asked_for_again(
         assert flight.done(flight.goto(3.0, 0.0, 6.0)) == "complete"
 
 
-@both_personalities
 def test_a_reboot_in_flight_is_the_end_of_the_flight_and_it_can_fly_again(
     personality: Personality,
 ) -> None:
@@ -187,7 +183,6 @@ def test_a_reboot_in_flight_is_the_end_of_the_flight_and_it_can_fly_again(
         assert flight.is_in(State.HOVERING)
 
 
-@both_personalities
 def test_a_link_that_is_out_is_stale_then_no_vehicle_then_somebody_elses(
     personality: Personality,
 ) -> None:
@@ -210,7 +205,6 @@ def test_a_link_that_is_out_is_stale_then_no_vehicle_then_somebody_elses(
         assert flight.is_in(State.HOVERING)
 
 
-@both_personalities
 def test_a_link_that_loses_delays_and_doubles_brings_it_to_its_goals(
     personality: Personality,
 ) -> None:
@@ -222,7 +216,6 @@ def test_a_link_that_loses_delays_and_doubles_brings_it_to_its_goals(
         flight.all_answered()
 
 
-@both_personalities
 def test_a_dead_motor_is_held_against_and_ends_on_the_ground(personality: Personality) -> None:
     with under_way(personality) as (flight, goal):
         strike(flight, "motor", motor=2)
@@ -249,7 +242,6 @@ def test_a_lost_cell_sends_it_home_by_the_stations_own_severity() -> None:
         assert math.hypot(east_m, north_m) < 2.0
 
 
-@both_personalities
 def test_wind_and_a_wrong_compass_do_not_cost_the_goal(personality: Personality) -> None:
     with under_way(personality) as (flight, goal):
         strike(flight, "wind", wind_ned_m_s=[6, -4, 0], gust_m_s=1.0)

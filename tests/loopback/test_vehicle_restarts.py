@@ -11,7 +11,6 @@ from gcs.gate.states import State
 from tests.loopback.flight import MISSIONS, PERSONALITIES, Flight, Personality
 from tests.loopback.lossy_link import Weather
 
-both_personalities = pytest.mark.parametrize("personality", PERSONALITIES)
 RETURNS_AT_70_M: dict[Personality, dict[str, float]] = {
     "px4": {"RTL_RETURN_ALT": 70.0},
     "ardupilot": {"RTL_ALT": 7000.0},
@@ -34,7 +33,6 @@ def restarts(flight: Flight) -> list[str]:
     return [line for line in flight.lines("link") if "has restarted" in line]
 
 
-@both_personalities
 @pytest.mark.parametrize("pause_s", [0.0, 0.4, 0.9, 3.0])
 def test_a_restart_with_another_return_height_is_noticed_whatever_the_pause(
     personality: Personality, pause_s: float
@@ -52,7 +50,6 @@ def test_a_restart_with_another_return_height_is_noticed_whatever_the_pause(
     assert flight.truth_enu()[2] < 6.0
 
 
-@both_personalities
 @pytest.mark.parametrize("pause_s", [0.0, 2.0])
 def test_after_a_restart_the_streams_are_asked_for_again(
     personality: Personality, pause_s: float
@@ -66,7 +63,6 @@ def test_after_a_restart_the_streams_are_asked_for_again(
 
 
 @pytest.mark.parametrize("pause_s", [0.0, 2.0, 6.0])
-@both_personalities
 def test_another_autopilot_with_the_same_number_is_another_vehicle(
     personality: Personality, pause_s: float
 ) -> None:
@@ -84,7 +80,6 @@ def test_another_autopilot_with_the_same_number_is_another_vehicle(
     assert flight.is_in(State.HOLDING)
 
 
-@both_personalities
 @pytest.mark.parametrize("latest_s", [0.5, 1.5])
 def test_a_link_that_loses_and_reorders_restarts_nothing(
     personality: Personality, latest_s: float
@@ -96,7 +91,6 @@ def test_a_link_that_loses_and_reorders_restarts_nothing(
     assert restarts(flight) == []
 
 
-@both_personalities
 def test_a_start_of_a_mission_does_not_outlive_a_restart(personality: Personality) -> None:
     flight = Flight(personality).connected()
     flight.do("mission_upload", path=str(MISSIONS / "square.toml"))
