@@ -16,6 +16,7 @@ from gcs.bridge.effects import BridgeEffect
 from gcs.frames import Vec3
 from gcs.gate import effects as gate_effects
 from gcs.gate import inputs as gate_inputs
+from gcs.gate.condition import Condition
 from gcs.gate.effects import Level, Ruling
 from gcs.gate.refusal import Refusal
 from gcs.gate.requests import Request
@@ -38,6 +39,11 @@ class GateInput(msgspec.Struct, frozen=True, gc=False):
     """An input for the owner's gate; of the station: for every vehicle's gate."""
 
     given: gate_inputs.Input
+
+
+def condition(name: Condition, active: bool, text: str) -> GateInput:
+    """Something that is watched is wrong, or no longer."""
+    return GateInput(gate_inputs.ConditionChanged(name, active, text))
 
 
 class GateAnswered(msgspec.Struct, frozen=True, gc=False):

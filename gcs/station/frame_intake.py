@@ -13,14 +13,13 @@ from gcs.protocol.effects import Address
 from gcs.report import Direction, FrameItem, FramesItem, GarbageItem
 from gcs.session.effects import ClientVerified, Effect, Record
 from gcs.session.inputs import Datagram
-from gcs.session.work import Work
+from gcs.session.work import Work, condition
 from gcs.station.bridge_port import BridgePort
 from gcs.station.links import Links
 from gcs.station.operators import Operators
 from gcs.station.queue import WorkQueue
 from gcs.station.signatures import Signatures
 from gcs.station.vehicles import Vehicles
-from gcs.vehicle.gate_port import condition
 from gcs.vehicle.interpreted_messages import INTERPRETED, PLACES
 from gcs.vehicle.received_frames import ALIVE
 from gcs.vehicle.record_items import pieces

@@ -13,9 +13,8 @@ from gcs.gate.airspace.projection import Projection
 from gcs.gate.airspace.separation import Track, closest_approach, is_too_close
 from gcs.gate.condition import Condition
 from gcs.gate.policy.policy import SeparationLimits
-from gcs.session.work import ForOwner, Work
+from gcs.session.work import ForOwner, Work, condition
 from gcs.station.vehicles import Vehicles
-from gcs.vehicle.gate_port import condition
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
 

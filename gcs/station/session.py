@@ -80,6 +80,7 @@ from gcs.session.work import (
     StreamOver,
     TellOperator,
     Work,
+    condition,
 )
 from gcs.station.bridge_port import BridgePort
 from gcs.station.ending import Ending
@@ -94,7 +95,6 @@ from gcs.station.ticks import Ticks
 from gcs.station.vehicles import FIRST as FIRST_SLOT
 from gcs.station.vehicles import Vehicles
 from gcs.station.waiting_for_vehicle import WaitingForVehicle
-from gcs.vehicle.gate_port import condition
 from gcs.vehicle.record_items import fault, hello, introduction, recorded, sim_line
 from gcs.vehicle.snapshot import snapshot
 from gcs.vehicle.talk.telemetry import Telemetry

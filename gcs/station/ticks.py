@@ -6,8 +6,7 @@ from gcs.gate import inputs
 from gcs.gate.condition import Condition
 from gcs.gate.effects import Level
 from gcs.session.speedup_waits import Times
-from gcs.session.work import GateInput, Log, SecondDue, SnapshotDue, Work
-from gcs.vehicle.gate_port import condition
+from gcs.session.work import GateInput, Log, SecondDue, SnapshotDue, Work, condition
 
 TICK_NS = 50_000_000
 TICKS_A_SECOND = 20

@@ -29,6 +29,7 @@ from gcs.session.work import (
     Log,
     PlaceFence,
     Work,
+    condition,
 )
 from gcs.vehicle.talk.telemetry import Telemetry
 
@@ -209,8 +210,3 @@ def _never_placed(verifier: Verifier) -> bool:
     """Home and origin are known, and the fence is too far from there, or no polygon."""
     unplaced = verifier.unplaced
     return verifier.home_ned is not None and unplaced is not None and unplaced.code is Code.POLICY
-
-
-def condition(name: Condition, active: bool, text: str) -> GateInput:
-    """Something is wrong, or no longer."""
-    return GateInput(inputs.ConditionChanged(name, active, text))

@@ -18,8 +18,7 @@ from gcs.gate.states import LandedState
 from gcs.protocol.autopilot import autopilot_of, mode_of
 from gcs.report import GeodeticItem, PoseItem
 from gcs.session.effects import Record
-from gcs.session.work import GateInput, PlaceFence
-from gcs.vehicle.gate_port import condition
+from gcs.session.work import GateInput, PlaceFence, condition
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire import messages as m
 from gcs.wire.ids import MavState, ModeFlag, Sensor

@@ -18,8 +18,8 @@ from gcs.protocol.vehicle_control import VehicleControl
 from gcs.report import ParamItem
 from gcs.session.effects import Record
 from gcs.session.speedup_waits import Times
-from gcs.session.work import GateInput, Log, Work
-from gcs.vehicle.gate_port import GatePort, condition
+from gcs.session.work import GateInput, Log, Work, condition
+from gcs.vehicle.gate_port import GatePort
 from gcs.vehicle.health.limit_monitors import Watch
 from gcs.vehicle.missions.jobs.job import VehicleView
 from gcs.vehicle.missions.missions import Missions

@@ -25,10 +25,10 @@ from gcs.session import announcements
 from gcs.session.effects import Record
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
-from gcs.session.work import AskMission, AskOrbit, CheckStart, Log, PlaceFence, Work
+from gcs.session.work import AskMission, AskOrbit, CheckStart, Log, PlaceFence, Work, condition
 from gcs.vehicle import messages, record_items
 from gcs.vehicle.decisions import VehicleDecisions
-from gcs.vehicle.gate_port import NOT_FLYING, condition
+from gcs.vehicle.gate_port import NOT_FLYING
 from gcs.vehicle.health.position_health import GPS_SILENT_NS
 from gcs.vehicle.missions.missions import still_paused
 from gcs.vehicle.parameters.thrust_meaning import with_thrust_meaning

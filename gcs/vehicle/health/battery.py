@@ -13,9 +13,8 @@ from enum import IntEnum
 from typing import Final
 
 from gcs.gate.condition import Condition
-from gcs.gate.inputs import ConditionChanged
 from gcs.gate.policy.policy import BatteryLimits
-from gcs.session.work import GateInput
+from gcs.session.work import GateInput, condition
 from gcs.wire.ids import BatteryFunction, ChargeState
 from gcs.wire.messages import BatteryStatus, SysStatus
 
@@ -116,7 +115,7 @@ class Batteries:
             (Condition.BATTERY_LOW, Level.LOW),
             (Condition.BATTERY_CRITICAL, Level.CRITICAL),
         ):
-            yield GateInput(ConditionChanged(name, worst.level >= level, worst.why))
+            yield condition(name, worst.level >= level, worst.why)
 
 
 _STATES: Final = frozenset(int(state) for state in ChargeState)

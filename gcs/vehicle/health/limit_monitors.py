@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from typing import Final
 
 from gcs.gate.condition import Condition
-from gcs.gate.inputs import ConditionChanged
 from gcs.gate.policy.policy import GpsLimits, Policy
 from gcs.protocol.sequence import SequenceTracker
 from gcs.session.speedup_waits import Times
-from gcs.session.work import GateInput
+from gcs.session.work import GateInput, condition
 from gcs.vehicle.health.battery import Batteries
 from gcs.vehicle.health.link_quality import LinkQuality
 from gcs.wire import messages as m
@@ -50,7 +49,7 @@ class GpsQuality:
         self._others_in_a_row = self._others_in_a_row + 1 if bool(why) is not self._is_poor else 0
         if self._others_in_a_row >= REPORTS_THAT_COUNT:
             self._is_poor, self._others_in_a_row = bool(why), 0
-            yield GateInput(ConditionChanged(Condition.GPS_POOR, self._is_poor, ", ".join(why)))
+            yield condition(Condition.GPS_POOR, self._is_poor, ", ".join(why))
 
     def _poor(self, message: GpsRawInt) -> list[str]:
         limits, satellites = self._limits, message.satellites_visible
@@ -102,4 +101,4 @@ def _own_fence(message: m.FenceStatus) -> GateInput:
     kind = FenceBreach(message.breach_type) if message.breach_type in kinds else FenceBreach.NONE
     text = f"the vehicle breaches its own fence: it is {BREACH_WORDS[kind]}"
     breached = bool(message.breach_status)
-    return GateInput(ConditionChanged(Condition.VEHICLE_FENCE_BREACHED, breached, text))
+    return condition(Condition.VEHICLE_FENCE_BREACHED, breached, text)

@@ -10,10 +10,9 @@ from collections.abc import Iterator
 from typing import Final
 
 from gcs.gate.condition import Condition
-from gcs.gate.inputs import ConditionChanged
 from gcs.gate.policy.policy import LinkLimits
 from gcs.session.speedup_waits import Times
-from gcs.session.work import GateInput
+from gcs.session.work import GateInput, condition
 from gcs.wire.messages import RadioStatus
 
 STEPS_PER_DB: Final = 1.9
@@ -77,4 +76,4 @@ class LinkQuality:
             why.append(f"{self._lost_pct:.0f} % of the vehicle's frames are lost")
         if self._is_faint and self._margin_db is not None:
             why.append(f"the radio's signal is {self._margin_db:.0f} dB above its noise")
-        return GateInput(ConditionChanged(Condition.LINK_POOR, bool(why), "; ".join(why)))
+        return condition(Condition.LINK_POOR, bool(why), "; ".join(why))

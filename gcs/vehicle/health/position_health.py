@@ -16,8 +16,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from gcs.gate.condition import Condition
-from gcs.gate.inputs import ConditionChanged
-from gcs.session.work import GateInput
+from gcs.session.work import GateInput, condition
 from gcs.wire.ids import EkfFlag, EstimatorFlag, GpsFix, Sensor
 from gcs.wire.messages import EkfStatusReport, EstimatorStatus, GpsRawInt, SysStatus
 
@@ -121,7 +120,7 @@ class PositionHealth:
         gps.accuracy_m = message.h_acc / 1e3 if message.h_acc and gps.fixed else None
         gps.had_fix |= gps.fixed
         counts = gps.had_fix or (armed and gps.fitted)
-        yield _condition(Condition.GPS_LOST, counts and not gps.fixed, gps.words)
+        yield condition(Condition.GPS_LOST, counts and not gps.fixed, gps.words)
 
     def gps_silent(self, silent_ns: int, now_ns: int, *, positions: bool) -> Iterator[GateInput]:
         """Once a second: the receiver is told of no more, though positions come.  Where none come
@@ -131,7 +130,7 @@ class PositionHealth:
             gps.awaited_ns = now_ns
         awaited_ns = max(gps.seen_ns, gps.awaited_ns)
         if gps.had_fix and gps.seen_ns and now_ns - awaited_ns > silent_ns:
-            yield _condition(Condition.GPS_LOST, True, "the vehicle tells nothing of its GPS")
+            yield condition(Condition.GPS_LOST, True, "the vehicle tells nothing of its GPS")
 
     def system_status(self, message: SysStatus, armed: bool) -> Iterator[GateInput]:
         """The health bits, where the messages that tell more do not come."""
@@ -143,13 +142,13 @@ class PositionHealth:
             good = bool(healthy & Sensor.SENSOR_GPS)
             gps.had_fix |= good
             lost = not good and (gps.had_fix or armed)
-            yield _condition(Condition.GPS_LOST, lost, "the vehicle says that its GPS is unhealthy")
+            yield condition(Condition.GPS_LOST, lost, "the vehicle says that its GPS is unhealthy")
         if not estimator.seen_ns and used & Sensor.AHRS:
             good = bool(healthy & Sensor.AHRS)
             estimator.had_good |= good
             bad = not good and (estimator.had_good or armed)
             text = "the vehicle says that its attitude and position are unhealthy"
-            yield _condition(Condition.ESTIMATOR_UNRELIABLE, bad, text)
+            yield condition(Condition.ESTIMATOR_UNRELIABLE, bad, text)
 
     def estimator_status(
         self, message: EstimatorStatus, armed: bool, now_ns: int
@@ -193,11 +192,7 @@ class PositionHealth:
         estimator.bad_in_a_row = estimator.bad_in_a_row + 1 if troubles else 0
         bad = estimator.bad_in_a_row >= REPORTS_THAT_COUNT and (estimator.had_good or armed)
         if bad or not troubles:
-            yield _condition(Condition.ESTIMATOR_UNRELIABLE, bad, "; ".join(troubles))
-
-
-def _condition(name: Condition, active: bool, text: str) -> GateInput:
-    return GateInput(ConditionChanged(name, active, text))
+            yield condition(Condition.ESTIMATOR_UNRELIABLE, bad, "; ".join(troubles))
 
 
 def _flag_troubles(flags: int) -> Iterator[str]:

@@ -24,8 +24,9 @@ from gcs.session.work import (
     Log,
     PlaceFence,
     Work,
+    condition,
 )
-from gcs.vehicle.gate_port import GatePort, condition
+from gcs.vehicle.gate_port import GatePort
 from gcs.vehicle.talk.telemetry import Telemetry
 from tests.unit.station import told
 from tests.unit.station.vehicles import HOME, SECOND_NS, vehicle

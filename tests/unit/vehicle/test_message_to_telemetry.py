@@ -11,8 +11,7 @@ from gcs.gate import inputs
 from gcs.gate.condition import Condition
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
-from gcs.session.work import GateInput, Work
-from gcs.vehicle.gate_port import condition
+from gcs.session.work import GateInput, Work, condition
 from gcs.vehicle.message_to_telemetry import updates
 from gcs.wire.messages import GpsGlobalOrigin, Heartbeat, HomePosition
 from tests.unit.station.vehicles import (
