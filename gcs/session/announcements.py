@@ -51,8 +51,8 @@ def requested(asked: Asked, request: Request) -> Log:
 
 
 def verdict(told: GiveVerdict, asked: Asked, name: str, sysid: int, now_ns: int) -> list[Effect]:
-    """Accepted, refused or superseded; with the numbers it was decided on.  `name` is the client's,
-    if it is one of MAVLink's: then whoever watches the bridge is told as well."""
+    """Accepted, refused or superseded; with the numbers it was decided on.  `name` is the
+    operator's, if it is a MAVLink client: then whoever watches the bridge is told as well."""
     item = DecisionItem(
         sysid,
         told.request_id,
@@ -75,11 +75,15 @@ def verdict(told: GiveVerdict, asked: Asked, name: str, sysid: int, now_ns: int)
         item.goal.enu if item.goal else None,
         told.request_id,
     )
-    return [Emit(event, asked.client), Record(item), *_for_bridge(item, asked.client, name, now_ns)]
+    return [
+        Emit(event, asked.operator),
+        Record(item),
+        *_for_bridge(item, asked.operator, name, now_ns),
+    ]
 
 
 def stream_verdict(
-    told: effects.StreamVerdict, client: int, name: str, sysid: int, now_ns: int
+    told: effects.StreamVerdict, operator: int, name: str, sysid: int, now_ns: int
 ) -> list[Effect]:
     """Samples of a stream are refused from now on, or flown."""
     outcome = "refused" if told.refusal else "accepted"
@@ -87,7 +91,7 @@ def stream_verdict(
     event = ipc.StreamVerdictEvent(
         item.outcome, item.code, item.sentence, item.zone, item.numbers, sysid
     )
-    return [Emit(event, client), Record(item), *_for_bridge(item, client, name, now_ns)]
+    return [Emit(event, operator), Record(item), *_for_bridge(item, operator, name, now_ns)]
 
 
 def stream_ended(source: str, sysid: int, code: str, sentence: str, samples: float) -> Record:
@@ -112,7 +116,7 @@ def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
         numbers={},
     )
     event = ipc.EndingEvent(asked.ask.id, item.word, item.outcome, item.code, item.sentence)
-    return [Emit(event, asked.client), Record(item)]
+    return [Emit(event, asked.operator), Record(item)]
 
 
 def _of_stream(
@@ -134,15 +138,15 @@ def _reason(refusal: Refusal | None) -> tuple[str, str, str]:
     return (refusal.code.value, refusal.sentence, refusal.zone) if refusal else ("", "", "")
 
 
-def _for_bridge(item: DecisionItem, client: int, name: str, now_ns: int) -> list[Emit]:
+def _for_bridge(item: DecisionItem, operator: int, name: str, now_ns: int) -> list[Emit]:
     """What becomes of what a MAVLink client has asked for, or streams."""
-    if client < FIRST_NUMBER:
+    if operator < FIRST_NUMBER:
         return []
     return [
         Emit(
             ipc.BridgeDecision(
                 now_ns,
-                client,
+                operator,
                 name,
                 item.word,
                 item.outcome,

@@ -13,7 +13,7 @@ from gcs import ipc
 from gcs.report import RecordItem
 
 EVERYONE = 0
-"""In place of a client's number: all operators are told."""
+"""In place of an operator's number: all operators are told."""
 
 
 class Transmit(msgspec.Struct, frozen=True, gc=False):
@@ -28,16 +28,16 @@ class Record(msgspec.Struct, frozen=True, gc=False):
 
 
 class Emit(msgspec.Struct, frozen=True, gc=False):
-    """Tell one operator's program, or all of them.  Its `Bye` is the last that a client is told."""
+    """Tell one operator's program, or all of them.  Its `Bye` is the last that it is told."""
 
     event: ipc.Event
-    client: int = EVERYONE
+    operator: int = EVERYONE
 
 
 class ShowTopics(msgspec.Struct, frozen=True, gc=False):
     """Tell this operator's program, from now on, of every message that goes into the record."""
 
-    client: int
+    operator: int
 
 
 class ReadFile(msgspec.Struct, frozen=True, gc=False):

@@ -7,9 +7,14 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, TypeAlias
 
+import msgspec
+
 from gcs import ipc
 from gcs.session.as_recorded import AsRecorded
 from gcs.wire.frame import Frame
+
+RECORDED: Final = {"operator": "client"}
+"""A record calls an operator's number so, which older ones do too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,39 +40,35 @@ class LinkEvent:
     trouble: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class OperatorJoined:
-    """Another operator's program connected to the station's socket, under a new client number.
+class OperatorJoined(msgspec.Struct, frozen=True, rename=RECORDED):
+    """Another operator's program connected to the station's socket, under a number of its own.
 
     `hold_on_leave`: see `ipc.Join`.
     """
 
-    client: int
+    operator: int
     name: str
     hold_on_leave: bool = True
 
 
-@dataclass(frozen=True, slots=True)
-class OperatorLine:
+class OperatorLine(msgspec.Struct, frozen=True, rename=RECORDED):
     """A command from one operator's program, already decoded."""
 
-    client: int
+    operator: int
     command: ipc.Command
 
 
-@dataclass(frozen=True, slots=True)
-class OperatorNoise:
+class OperatorNoise(msgspec.Struct, frozen=True, rename=RECORDED):
     """A line from an operator's program that is no command."""
 
-    client: int
+    operator: int
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class OperatorGone:
+class OperatorGone(msgspec.Struct, frozen=True, rename=RECORDED):
     """An operator's command stream ended, or nobody reads what it is told."""
 
-    client: int
+    operator: int
     reason: str
 
 

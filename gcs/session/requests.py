@@ -16,10 +16,10 @@ FIRST = 1
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """One request in the words that it was made in, and which operator (`client`) made it."""
+    """One request in the words that it was made in, and the number of the operator who made it."""
 
     ask: ipc.Ask
-    client: int = 1
+    operator: int = 1
 
     @property
     def word(self) -> str:
@@ -28,15 +28,15 @@ class Asked:
     @property
     def source(self) -> str:
         """Who asks, for the gate and the record."""
-        return source_of(self.client)
+        return source_of(self.operator)
 
 
-def source_of(client: int) -> str:
+def source_of(operator: int) -> str:
     """What the gate and the record call an operator."""
-    return "operator" if client == 1 else f"operator {client}"
+    return "operator" if operator == 1 else f"operator {operator}"
 
 
-def client_of(source: str) -> int:
+def operator_of(source: str) -> int:
     """The operator whom `source_of` calls so."""
     return int(source.removeprefix("operator") or 1)
 
@@ -69,19 +69,19 @@ class Requests:
         self._next_id = 1
         self._asked: dict[int, Asked] = {}
 
-    def open(self, ask: ipc.Ask, client: int) -> int:
+    def open(self, ask: ipc.Ask, operator: int) -> int:
         request_id = self._next_id
         self._next_id += 1
-        self._asked[request_id] = Asked(ask, client)
+        self._asked[request_id] = Asked(ask, operator)
         return request_id
 
     def get(self, request_id: int) -> Asked:
         return self._asked[request_id]
 
-    def number_of(self, client: int, ask_id: int) -> int | None:
-        """The request that a client made as its own number `ask_id`, if it is not over."""
+    def number_of(self, operator: int, ask_id: int) -> int | None:
+        """The request that an operator made as its own number `ask_id`, if it is not over."""
         for request_id, asked in self._asked.items():
-            if asked.client == client and asked.ask.id == ask_id:
+            if asked.operator == operator and asked.ask.id == ask_id:
                 return request_id
         return None
 

@@ -98,17 +98,17 @@ class AskMission(msgspec.Struct, frozen=True, gc=False):
 
 
 class AskOrbit(msgspec.Struct, frozen=True, gc=False):
-    """The request of the operator `client` that was opened as `request_id`, for an orbit."""
+    """The request of the operator `operator` that was opened as `request_id`, for an orbit."""
 
     request_id: int
     ask: ipc.Ask
-    client: int
+    operator: int
 
 
 class OrbitSample(msgspec.Struct, frozen=True, gc=False):
-    """The next sample of the orbit that the operator `client` has asked for; None: it is over."""
+    """The next sample of the orbit that the operator `operator` has asked for; None: it is over."""
 
-    client: int
+    operator: int
     sample: ipc.Stream | None
 
 

@@ -44,9 +44,9 @@ from gcs.session.inputs import (
 )
 from gcs.session.requests import FIRST
 from gcs.shell.client_ports import ClientPorts
-from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.datagram_runs import pieces, runs
+from gcs.shell.operator_sockets import OperatorSockets
 from gcs.shell.pipes import LineSink, LineSource
 from gcs.shell.recording import Recording
 from gcs.shell.signals import SignalSource
@@ -102,11 +102,11 @@ class Loop:
         recording: Recording,
         signals: SignalSource,
         sim: SimProcess | None,
-        clients: ClientSockets | None = None,
+        others: OperatorSockets | None = None,
         on_snapshot: Callable[[ipc.Snapshot], None] = lambda _: None,
         client_ports: ClientPorts | None = None,
     ) -> None:
-        """`operator` and `screen` are the pipes of the operator who started the station, `clients`
+        """`operator` and `screen` are the pipes of the operator who started the station, `others`
         everybody else, `client_ports` where others speak MAVLink with the vehicle through it.
         `on_snapshot` is called with each one, and must not wait."""
         self._core = core
@@ -117,7 +117,7 @@ class Loop:
         self._recording = recording
         self._signals = signals
         self._sim = sim
-        self._clients = clients
+        self._others = others
         self._on_snapshot = on_snapshot
         self._client_ports = client_ports
         self._topics = TopicStream(recording, self._tell)
@@ -181,7 +181,7 @@ class Loop:
         if self._sim_open and self._sim is not None and self._sim.lines in readable:
             self._read_sim(self._sim)
         self._wake_if_due()
-        self._read_clients(readable, writable)
+        self._read_operators(readable, writable)
 
     def _wait(self) -> tuple[list[Source], list[Source]]:
         """Once a turn, for each datagram of a slow stream: nothing here is more than it must be."""
@@ -204,14 +204,14 @@ class Loop:
         if self._sim_open and self._sim is not None:
             sources.append(self._sim.lines)
         sinks: list[Source] = [self._screen] if self._screen.waiting else []
-        clients = self._clients
+        others = self._others
         self._busy = False
-        if clients is not None and clients.alone:
-            sources.append(clients)
-        elif clients is not None:
-            sources += clients.sources
-            sinks += clients.sinks
-            self._busy = clients.busy
+        if others is not None and others.alone:
+            sources.append(others)
+        elif others is not None:
+            sources += others.sources
+            sinks += others.sinks
+            self._busy = others.busy
         ports = self._client_ports
         if ports is not None:
             sources += ports.waiting
@@ -275,13 +275,13 @@ class Loop:
             self._operator_open = False
             self._feed(OperatorGone(FIRST, "the command stream ended"))
 
-    def _read_clients(self, readable: list[Source], writable: list[Source]) -> None:
+    def _read_operators(self, readable: list[Source], writable: list[Source]) -> None:
         """Whatever they send, and however much of it: the grid's deadline is met between lines."""
-        if self._clients is None:
+        if self._others is None:
             return
-        for given in self._clients.turn(readable, writable):
+        for given in self._others.turn(readable, writable):
             if isinstance(given, OperatorGone):
-                self._topics.remove(given.client)
+                self._topics.remove(given.operator)
             self._feed(given)
             self._wake_if_due()
 
@@ -352,10 +352,10 @@ class Loop:
                 self._transmit(link, data)
             case Record(item):
                 self._recording.write(item, now_ns)
-            case Emit(event, client):
-                self._emit(event, client)
-            case ShowTopics(client):
-                self._show_topics(client)
+            case Emit(event, operator):
+                self._emit(event, operator)
+            case ShowTopics(operator):
+                self._show_topics(operator)
             case ReadFile(token, path):
                 return _read(token, path)
             case WriteFile(token, path, data):
@@ -374,29 +374,29 @@ class Loop:
         elif self._client_ports is not None:
             self._client_ports.send(link, data)
 
-    def _emit(self, event: ipc.Event, client: int) -> None:
+    def _emit(self, event: ipc.Event, operator: int) -> None:
         """One line, to whom it is for; what comes again anyway may be dropped on the way."""
         line = ipc.encode(event)
         droppable = isinstance(event, ipc.Snapshot | ipc.MessageEvent | ipc.BridgeStatus)
         last = isinstance(event, ipc.Bye)
         if isinstance(event, ipc.Snapshot):
             self._on_snapshot(event)
-        self._tell(line, client, droppable, last=last)
+        self._tell(line, operator, droppable, last=last)
 
-    def _show_topics(self, client: int) -> None:
-        if self._clients is not None:
-            self._clients.allow_more(client)
-        self._topics.add(client)
+    def _show_topics(self, operator: int) -> None:
+        if self._others is not None:
+            self._others.allow_more(operator)
+        self._topics.add(operator)
 
-    def _tell(self, line: bytes, client: int, droppable: bool, *, last: bool = False) -> None:
-        if client in (EVERYONE, FIRST):
+    def _tell(self, line: bytes, operator: int, droppable: bool, *, last: bool = False) -> None:
+        if operator in (EVERYONE, FIRST):
             put: Callable[[bytes], None] = self._screen.offer if droppable else self._screen.put
             put(line)
             if last:
                 self._operator_open = False
                 self._screen.hang_up()
-        if client != FIRST and self._clients is not None:
-            self._clients.tell(line, client, droppable=droppable, last=last)
+        if operator != FIRST and self._others is not None:
+            self._others.tell(line, operator, droppable=droppable, last=last)
 
 
 def _read(token: int, path: str) -> FileRead:

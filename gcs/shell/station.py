@@ -31,7 +31,6 @@ from gcs.session.effects import EVERYONE
 from gcs.session.setup import Setup
 from gcs.shell import sockets
 from gcs.shell.client_ports import ClientPorts
-from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.client_table import ClientLimits
 from gcs.shell.clock import Clock
 from gcs.shell.disk_watch import DiskWatch, free_in
@@ -40,6 +39,7 @@ from gcs.shell.environment import environment
 from gcs.shell.key_files import KeyFileError, read_key
 from gcs.shell.local_socket import LocalSocket
 from gcs.shell.loop import Loop
+from gcs.shell.operator_sockets import OperatorSockets
 from gcs.shell.pipes import LineSink, LineSource
 from gcs.shell.recording import Recording
 from gcs.shell.signals import SignalSource
@@ -88,7 +88,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
         if setup.sim is not None:
             sim = SimProcess(setup.sim, links[0].port)
             opened.callback(sim.stop)
-        local, clients = _open_local_socket(setup, policy, links, recording, screen, opened)
+        local, operators = _open_local_socket(setup, policy, links, recording, screen, opened)
         session = Session(
             Setup(
                 config=setup,
@@ -119,7 +119,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
             recording,
             signals,
             sim,
-            clients,
+            operators,
             local.describe if local else lambda _: None,
             client_ports,
         ).run()
@@ -128,8 +128,8 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
         whole = recording.close(clock.now_ns())
         exit_code = finish.exit_code or (0 if whole else ExitCode.RECORDER)
         bye = ipc.encode(ipc.Bye(exit_code, recording.path, finish.sentence))
-        if clients is not None:
-            clients.tell(bye, EVERYONE, droppable=False, last=True)
+        if operators is not None:
+            operators.tell(bye, EVERYONE, droppable=False, last=True)
     screen.put(bye)
     if setup.compact:
         compact_in_background(recording.parts)
@@ -214,7 +214,7 @@ def _open_local_socket(
     recording: Recording,
     screen: LineSink,
     opened: ExitStack,
-) -> tuple[LocalSocket | None, ClientSockets | None]:
+) -> tuple[LocalSocket | None, OperatorSockets | None]:
     """The way in for other operators.  A station that cannot have one flies without it."""
     endpoints = [str(replace(link.endpoint, port=link.port)) for link in links]
     try:
@@ -231,10 +231,10 @@ def _open_local_socket(
         text = f"no other terminal can reach this station: {error}"
         screen.put(ipc.encode(ipc.Trouble(text, "")))
         return None, None
-    clients = ClientSockets(local.listener, local.description.token)
-    opened.callback(clients.close)
+    operators = OperatorSockets(local.listener, local.description.token)
+    opened.callback(operators.close)
     opened.callback(local.close)
-    return local, clients
+    return local, operators
 
 
 def _open_recording(setup: StationConfig, clock: Clock) -> Recording:

@@ -1,7 +1,7 @@
 """What goes into the record, message by message, for operators' programs that asked to watch it.
 
-Nobody waits for a watcher: its connection has a bounded queue (`client_sockets.py`), raw frames are
-left out while others wait in it, and one that takes nothing loses its connection.
+Nobody waits for a watcher: its connection has a bounded queue (`operator_sockets.py`), raw frames
+are left out while others wait in it, and one that takes nothing loses its connection.
 """
 
 from __future__ import annotations

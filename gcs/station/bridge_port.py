@@ -179,7 +179,7 @@ class BridgePort:
         if isinstance(given, Requested):
             if isinstance(given.request, Arm):
                 self.bridge.armings.asked(sysid, now_ns)
-            return self.bridge.asked(self._operators.client_of(given.request_id), sysid, now_ns)
+            return self.bridge.asked(self._operators.operator_of(given.request_id), sysid, now_ns)
         if isinstance(given, HeartbeatSeen):
             done = self._armed_unasked(given, sysid, now_ns)
             if given.armed:

@@ -10,7 +10,7 @@ from gcs.session.effects import Emit, Finish
 from gcs.session.setup import Setup
 from gcs.session.speedup_waits import Times
 from gcs.session.work import ForOwner, GateInput, Log, Work
-from gcs.station.clients import LEAVING_NS
+from gcs.station.operator_control import LEAVING_NS
 from gcs.station.operators import Operators
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.vehicle import Vehicle

@@ -18,10 +18,10 @@ class Operations:
         self._all: dict[int, ipc.Operation] = {}
 
     def begin(
-        self, operation_id: int, asked: ipc.Ask, client: int, operator: str, now_ns: int
+        self, operation_id: int, asked: ipc.Ask, operator: int, name: str, now_ns: int
     ) -> ipc.Operation:
         """The request was accepted."""
-        begun = ipc.Operation(operation_id, asked, client, operator, now_ns)
+        begun = ipc.Operation(operation_id, asked, operator, name, now_ns)
         self._all[operation_id] = begun
         self._forget_oldest()
         return begun

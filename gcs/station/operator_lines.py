@@ -21,19 +21,19 @@ def line(
     operators: Operators,
     vehicles: Vehicles,
     bridge: Bridge,
-    client: int,
+    operator: int,
     command: ipc.Command,
     now_ns: int,
 ) -> ForOwner:
-    """One command of the operator `client`; what is about no vehicle is the station's.
+    """One command of the operator `operator`; what is about no vehicle is the station's.
 
     A climb is held back for a moment after a MAVLink client has written how high one is, and an
     arming after one has set the mode of a mission.
     """
     if not isinstance(command, ipc.Ask | ipc.Stream):
-        return ForOwner(STATION, tuple(operators.line(client, command, None, None, now_ns)))
+        return ForOwner(STATION, tuple(operators.line(operator, command, None, None, now_ns)))
     work = [
-        ForOwner(owner, tuple(_asked(operators, vehicles, bridge, client, asked, owner, now_ns)))
+        ForOwner(owner, tuple(_asked(operators, vehicles, bridge, operator, asked, owner, now_ns)))
         for owner, asked in _for_each(operators, vehicles, command)
     ]
     return work[0] if len(work) == 1 else ForOwner(STATION, tuple(work))
@@ -43,7 +43,7 @@ def _asked(
     operators: Operators,
     vehicles: Vehicles,
     bridge: Bridge,
-    client: int,
+    operator: int,
     command: ipc.Ask | ipc.Stream,
     owner: int,
     now_ns: int,
@@ -58,11 +58,11 @@ def _asked(
         not_now = bridge.armings.why_not(command, telemetry.sysid)
         refusal = refusal or not_now
     if isinstance(command, ipc.Stream) and owner != STATION:
-        streamed = vehicles.of_owner(owner).streamed_by(client)
-        return [*streamed, *operators.line(client, command, autopilot, refusal, now_ns)]
+        streamed = vehicles.of_owner(owner).streamed_by(operator)
+        return [*streamed, *operators.line(operator, command, autopilot, refusal, now_ns)]
     if held is None:
-        return operators.line(client, command, autopilot, refusal, now_ns)
-    told = operators.line(client, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)
+        return operators.line(operator, command, autopilot, refusal, now_ns)
+    told = operators.line(operator, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)
     return [held, *told]
 
 

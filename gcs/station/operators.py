@@ -1,8 +1,8 @@
-"""What operators' programs say, and what they are told: all of the session that is per client.
+"""What operators' programs say, and what they are told: all of the session that is per operator.
 
-Who is in control is `clients.py`, the numbers of requests `requests.py`, what became of accepted
-ones `operations.py`, who is told of which messages `subscriptions.py`.  This composes them and
-returns work for the rest of the session.
+Who is in control is `operator_control.py`, the numbers of requests `requests.py`, what became of
+accepted ones `operations.py`, who is told of which messages `subscriptions.py`.  This composes them
+and returns work for the rest of the session.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from gcs.protocol.autopilot import GENERIC, Autopilot
 from gcs.request_words import BadAskError, Doer, doer_of
 from gcs.session import announcements
 from gcs.session.effects import Emit, ShowTopics
-from gcs.session.requests import FIRST, Requests, client_of, request_of
+from gcs.session.requests import FIRST, Requests, operator_of, request_of
 from gcs.session.setup import Setup
 from gcs.session.speedup_waits import Times
 from gcs.session.work import (
@@ -36,8 +36,8 @@ from gcs.session.work import (
     TellOperator,
     Work,
 )
-from gcs.station.clients import NOBODY, Clients
 from gcs.station.operations import Operations
+from gcs.station.operator_control import NOBODY, OperatorControl
 from gcs.station.streams import BEGIN, Streams
 from gcs.station.subscriptions import Subscriptions
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -54,7 +54,7 @@ class Operators:
 
     def __init__(self, setup: Setup, times: Times) -> None:
         self._keep = setup.config.keep
-        self._clients = Clients(setup.config.operator, first_looks=setup.config.bridge)
+        self._control = OperatorControl(setup.config.operator, first_looks=setup.config.bridge)
         self._requests = Requests()
         self._operations = Operations()
         self._subscriptions = Subscriptions(times)
@@ -63,31 +63,31 @@ class Operators:
     @property
     def in_control(self) -> ipc.OperatorInfo | None:
         """The operator in control of the station; None: nobody."""
-        client = self._clients.in_control
-        return ipc.OperatorInfo(client, self._clients.name(client)) if client else None
+        operator = self._control.in_control
+        return ipc.OperatorInfo(operator, self._control.name(operator)) if operator else None
 
     @property
     def first_is_alone(self) -> bool:
         """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
-        return self._clients.first_is_alone
+        return self._control.first_is_alone
 
-    def client_of(self, request_id: int) -> int:
+    def operator_of(self, request_id: int) -> int:
         """Who has made the request that is not over yet."""
-        return self._requests.get(request_id).client
+        return self._requests.get(request_id).operator
 
     # ----------------------------------------------------------------------- come and go
 
-    def join(self, client: int, name: str, hold_on_leave: bool) -> list[Work]:
-        return self._clients.join(client, name, hold_on_leave)
+    def join(self, operator: int, name: str, hold_on_leave: bool) -> list[Work]:
+        return self._control.join(operator, name, hold_on_leave)
 
-    def lost(self, client: int, reason: str) -> list[Work]:
+    def lost(self, operator: int, reason: str) -> list[Work]:
         """Its connection has ended.  The station lives as long as its first operator, unless it
         is to be kept."""
-        self._subscriptions.forget(client)
-        ended = self._streams.forget(client)
-        if client == FIRST and not self._keep:
+        self._subscriptions.forget(operator)
+        ended = self._streams.forget(operator)
+        if operator == FIRST and not self._keep:
             return [*ended, EndSession(reason)]
-        return [*ended, *self._clients.lost(client, reason)]
+        return [*ended, *self._control.lost(operator, reason)]
 
     def signalled(self, name: str) -> list[Work]:
         """A kept station outlives the terminal of its first operator."""
@@ -96,16 +96,16 @@ class Operators:
     @property
     def anyone_leaves(self) -> bool:
         """Whether somebody waits for its good-bye."""
-        return self._clients.anyone_leaves
+        return self._control.anyone_leaves
 
     def farewells(self, settled: bool, words: str, log_path: str, now_ns: int) -> list[Work]:
         """Good-bye to those who leave a station that lives on; `words` say how the vehicle is."""
         work: list[Work] = []
-        for client in self._clients.farewells(settled, now_ns):
-            self._subscriptions.forget(client)
-            sentence = words if client == self._clients.in_control else self._goes_on()
-            work.append(Emit(ipc.Bye(0, log_path, sentence, goes_on=True), client))
-            work += self._clients.gone(client)
+        for operator in self._control.farewells(settled, now_ns):
+            self._subscriptions.forget(operator)
+            sentence = words if operator == self._control.in_control else self._goes_on()
+            work.append(Emit(ipc.Bye(0, log_path, sentence, goes_on=True), operator))
+            work += self._control.gone(operator)
         return work
 
     def _goes_on(self) -> str:
@@ -117,10 +117,10 @@ class Operators:
         )
         return "the station goes on" + (f", with {running}" if running else "")
 
-    def _leave(self, client: int, reason: str, now_ns: int) -> list[Work]:
-        if client == FIRST and not self._keep:
+    def _leave(self, operator: int, reason: str, now_ns: int) -> list[Work]:
+        if operator == FIRST and not self._keep:
             return [EndSession(reason)]
-        return self._clients.leave(client, now_ns)
+        return self._control.leave(operator, now_ns)
 
     # ------------------------------------------------------------------------------ lines
 
@@ -134,7 +134,7 @@ class Operators:
 
     def line(
         self,
-        client: int,
+        operator: int,
         command: ipc.Command,
         autopilot: Autopilot | None,
         no_vehicle: Refusal | None,
@@ -144,118 +144,118 @@ class Operators:
         why nothing can be asked of any, such as several that are heard."""
         match command:
             case ipc.Ask():
-                return self._ask(client, command, autopilot, no_vehicle, now_ns)
+                return self._ask(operator, command, autopilot, no_vehicle, now_ns)
             case ipc.Stream():
-                return self._stream(client, command, no_vehicle, now_ns)
+                return self._stream(operator, command, no_vehicle, now_ns)
             case ipc.Pending(goal_enu, _):
-                if client != self._clients.in_control:
+                if operator != self._control.in_control:
                     return []  # who only looks cannot send it
                 text = f"Keyboard: {plain_enu(goal_enu)}"
                 return [Log(Level.INFO, "keyboard_manager", text)]
             case ipc.Leave(reason):
-                return self._leave(client, reason, now_ns)
+                return self._leave(operator, reason, now_ns)
             case ipc.Subscribe(names):
-                return [*self._subscriptions.subscribe(client, names, now_ns)]
+                return [*self._subscriptions.subscribe(operator, names, now_ns)]
             case ipc.ListOperations(number):
-                return [Emit(ipc.OperationList(number, self._operations.listed()), client)]
+                return [Emit(ipc.OperationList(number, self._operations.listed()), operator)]
             case ipc.WatchTopics():
-                return [ShowTopics(client)]
+                return [ShowTopics(operator)]
             case ipc.Join():
-                return [Emit(ipc.Trouble("this connection has joined already"), client)]
+                return [Emit(ipc.Trouble("this connection has joined already"), operator)]
 
     def _ask(
         self,
-        client: int,
+        operator: int,
         ask: ipc.Ask,
         autopilot: Autopilot | None,
         no_vehicle: Refusal | None,
         now_ns: int,
     ) -> list[Work]:
         """What cannot be judged at all takes no control."""
-        refusal = self._clients.refusal(client, ask)
+        refusal = self._control.refusal(operator, ask)
         if refusal is not None:
-            return self._refuse(self._requests.open(ask, client), ask, refusal)
+            return self._refuse(self._requests.open(ask, operator), ask, refusal)
         doer = doer_of(ask.word)
         if doer is Doer.STATION:
-            return self._ask_station(client, ask, now_ns)
+            return self._ask_station(operator, ask, now_ns)
         if ask.operation:
-            return self._ask_stop(client, ask)
+            return self._ask_stop(operator, ask)
         if no_vehicle is not None:
-            return self._refuse(self._requests.open(ask, client), ask, no_vehicle)
+            return self._refuse(self._requests.open(ask, operator), ask, no_vehicle)
         if doer in (Doer.JOB, Doer.TRANSFER):
-            given = self._give_where_free(client, ask, now_ns)
-            return [*given, AskMission(self._requests.open(ask, client), ask)]
+            given = self._give_where_free(operator, ask, now_ns)
+            return [*given, AskMission(self._requests.open(ask, operator), ask)]
         if doer is Doer.ORBIT:
-            given = self._give_where_free(client, ask, now_ns)
-            return [*given, AskOrbit(self._requests.open(ask, client), ask, client)]
+            given = self._give_where_free(operator, ask, now_ns)
+            return [*given, AskOrbit(self._requests.open(ask, operator), ask, operator)]
         try:
             request = request_of(ask, autopilot or GENERIC)
         except BadAskError as error:
             refused = ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
-            return [Emit(refused, client)]
-        given = self._give_where_free(client, ask, now_ns)
-        request_id = self._requests.open(ask, client)
+            return [Emit(refused, operator)]
+        given = self._give_where_free(operator, ask, now_ns)
+        request_id = self._requests.open(ask, operator)
         if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
             # The mission mode by its name is a mission start, and is verified like one.
             return [*given, AskMission(request_id, ask)]
         return [*given, *self.ask_gate(request_id, request)]
 
     def _stream(
-        self, client: int, sample: ipc.Stream, no_vehicle: Refusal | None, now_ns: int
+        self, operator: int, sample: ipc.Stream, no_vehicle: Refusal | None, now_ns: int
     ) -> list[Work]:
         """One sample: for the gate, if this operator is in control or nobody is."""
-        refusal = self._clients.refusal(client, BEGIN)
+        refusal = self._control.refusal(operator, BEGIN)
         if refusal is not None:
-            return self._refuse_sample(client, sample, refusal, now_ns)
+            return self._refuse_sample(operator, sample, refusal, now_ns)
         if no_vehicle is not None:
-            return self._refuse_sample(client, sample, no_vehicle, now_ns)
-        free = self._clients.in_control == NOBODY
-        if free and not self._streams.goes_on(client, sample, now_ns):
+            return self._refuse_sample(operator, sample, no_vehicle, now_ns)
+        free = self._control.in_control == NOBODY
+        if free and not self._streams.goes_on(operator, sample, now_ns):
             return []
         # Who is free to take control has it when the gate has let the sample through.
-        return [GateInput(self._streams.seen(client, sample, now_ns))]
+        return [GateInput(self._streams.seen(operator, sample, now_ns))]
 
     def _refuse_sample(
-        self, client: int, sample: ipc.Stream, refusal: Refusal, now_ns: int
+        self, operator: int, sample: ipc.Stream, refusal: Refusal, now_ns: int
     ) -> list[Work]:
         """One that reaches no gate: told where that is news."""
-        told = self._streams.refuse(client, sample, refusal, now_ns)
+        told = self._streams.refuse(operator, sample, refusal, now_ns)
         if told is None:
             return []
         text = f"stream of {told.source}: refused {refusal.code.value}: {refusal.sentence}"
         return [*self._tell_stream(told, 0, now_ns), Log(Level.WARNING, NODE, text)]
 
-    def _give_where_free(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
+    def _give_where_free(self, operator: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """Control, to the first who asks for something that needs it."""
-        return self._without_streams(client, self._clients.give_where_free(client, ask), now_ns)
+        return self._without_streams(operator, self._control.give_where_free(operator, ask), now_ns)
 
-    def _without_streams(self, client: int, given: list[Work], now_ns: int) -> list[Work]:
-        """`client` is given control: the stream of whoever had it is over, and not only when it has
-        been silent for a while."""
-        others = self._streams.others(client, now_ns) if given else []
+    def _without_streams(self, operator: int, given: list[Work], now_ns: int) -> list[Work]:
+        """`operator` is given control: the stream of whoever had it is over, and not only when it
+        has been silent for a while."""
+        others = self._streams.others(operator, now_ns) if given else []
         ends = [
             StreamOver(vehicle, self._requests.open(_end_of_stream(vehicle), other))
             for other, vehicle in others
         ]
         return [*ends, *given]
 
-    def end_stream(self, client: int, sysid: int) -> list[Work]:
+    def end_stream(self, operator: int, sysid: int) -> list[Work]:
         """The stream that the station has made in this operator's name is over."""
-        return [StreamOver(sysid, self._requests.open(_end_of_stream(sysid), client))]
+        return [StreamOver(sysid, self._requests.open(_end_of_stream(sysid), operator))]
 
-    def _ask_station(self, client: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
+    def _ask_station(self, operator: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """What is asked of the station, not of the vehicle, is done at once."""
-        done = _done(self._requests.open(ask, client), "")
+        done = _done(self._requests.open(ask, operator), "")
         if ask.word == "station_take":
-            taken = self._clients.take(client)
-            return [*self._without_streams(client, taken, now_ns), *done]
+            taken = self._control.take(operator)
+            return [*self._without_streams(operator, taken, now_ns), *done]
         if ask.word == "station_release":
-            return [*self._clients.release(client), *done]
-        return [*done, EndSession(f"operator {client} ended the station")]
+            return [*self._control.release(operator), *done]
+        return [*done, EndSession(f"operator {operator} ended the station")]
 
-    def _ask_stop(self, client: int, ask: ipc.Ask) -> list[Work]:
+    def _ask_stop(self, operator: int, ask: ipc.Ask) -> list[Work]:
         """An abort of one operation: nothing else is stopped in its place if that has ended."""
-        request_id = self._requests.open(ask, client)
+        request_id = self._requests.open(ask, operator)
         operation = self._operations.get(ask.operation)
         if ask.word != "abort" or operation is None or operation.ended_ns is not None:
             ended = "is not known" if operation is None else f"has ended: {operation.state}"
@@ -267,22 +267,22 @@ class Operators:
 
     def ask_plan(self, asked: AsksPlan, no_vehicle: Refusal | None, now_ns: int) -> list[Work]:
         """A MAVLink client brings a plan, or asks for one to be taken off."""
-        client, ask = asked.client, asked.ask
-        request_id = self._requests.open(ask, client)
-        refusal = self._clients.refusal(client, ask) or no_vehicle
+        operator, ask = asked.client, asked.ask
+        request_id = self._requests.open(ask, operator)
+        refusal = self._control.refusal(operator, ask) or no_vehicle
         if refusal is not None:
             return self._refuse(request_id, ask, refusal)
-        given = self._give_where_free(client, ask, now_ns)
+        given = self._give_where_free(operator, ask, now_ns)
         return [*given, AskMission(request_id, ask, asked.plan, asked.kind)]
 
     def stop_plan(self, stopped: StopsPlan) -> list[Work]:
-        """The client does not want it any more."""
+        """The operator does not want it any more."""
         request_id = self._requests.number_of(stopped.client, stopped.ask_id)
         return [] if request_id is None else [StopTransfer(request_id)]
 
-    def refuse(self, client: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
+    def refuse(self, operator: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
         """What is refused before it is a request: it has a number, a verdict and a record too."""
-        return self._refuse(self._requests.open(ask, client), ask, refusal)
+        return self._refuse(self._requests.open(ask, operator), ask, refusal)
 
     @staticmethod
     def _refuse(request_id: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
@@ -298,7 +298,7 @@ class Operators:
         """
         made = self._requests.get(request_id)
         if isinstance(request, StartMission):
-            refusal = self._clients.refusal(made.client, made.ask)
+            refusal = self._control.refusal(made.operator, made.ask)
             if refusal is not None:
                 return self._refuse(request_id, made.ask, refusal)
         given = gate_inputs.Requested(request_id, made.source, request)
@@ -308,12 +308,12 @@ class Operators:
         """To the operator who asked; an accepted request is an operation, which all are told."""
         request_id, requests = told.request_id, self._requests
         asked = requests.get(request_id)
-        name = self._clients.name(asked.client)
+        name = self._control.name(asked.operator)
         work: list[Work] = [*announcements.verdict(told, asked, name, sysid, now_ns)]
         if told.ruling is not Ruling.ACCEPTED:
             requests.close(request_id)
             return work
-        begun = self._operations.begin(request_id, asked.ask, asked.client, name, now_ns)
+        begun = self._operations.begin(request_id, asked.ask, asked.operator, name, now_ns)
         return [*work, Emit(begun)]
 
     def outcome(self, told: Outcome, sysid: int, now_ns: int) -> list[Work]:
@@ -326,23 +326,23 @@ class Operators:
         """What the gate makes of somebody's setpoint stream, where that changes.
 
         Where nobody is in control, whose samples are flown gets it; a refused one takes none."""
-        client = client_of(told.source)
-        given = [] if told.refusal else self._give_where_free(client, BEGIN, now_ns)
+        operator = operator_of(told.source)
+        given = [] if told.refusal else self._give_where_free(operator, BEGIN, now_ns)
         verdict = self._streams.verdict(told, sysid, now_ns)
         return [*given, *self._tell_stream(verdict, sysid, now_ns)]
 
     def _tell_stream(self, told: StreamVerdict, sysid: int, now_ns: int) -> list[Work]:
         """To the operator, and where it is a MAVLink client to whoever watches the bridge."""
-        client = client_of(told.source)
-        name = self._clients.name(client)
-        return [*announcements.stream_verdict(told, client, name, sysid, now_ns)]
+        operator = operator_of(told.source)
+        name = self._control.name(operator)
+        return [*announcements.stream_verdict(told, operator, name, sysid, now_ns)]
 
     def second(self, now_ns: int) -> list[Work]:
         """Once a second: what has ended because nothing more came."""
         return self._streams.second(now_ns)
 
     def tell(self, told: TellOperator) -> list[Work]:
-        return [Emit(told.event, self._requests.get(told.request_id).client)]
+        return [Emit(told.event, self._requests.get(told.request_id).operator)]
 
     def missing_messages(self, telemetry: Telemetry, now_ns: int) -> list[CommandLong]:
         """Commands that ask the vehicle for what somebody subscribed to and does not hear."""

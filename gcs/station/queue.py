@@ -66,7 +66,7 @@ class WorkQueue:
                 owner = item.owner
                 continue
             kind = type(item)
-            if kind is Emit and cast("Emit", item).client >= FIRST_NUMBER:
+            if kind is Emit and cast("Emit", item).operator >= FIRST_NUMBER:
                 worked = True
                 agenda += reversed(step(item, owner, now_ns))
             elif kind in EFFECT_TYPES:

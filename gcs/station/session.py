@@ -246,7 +246,7 @@ class Session:
         handled, self._unfinished = self._unfinished is None, None
         if self._frames_raised:
             handled, self._frames_raised = False, self._frames_raised - 1
-        visitor = isinstance(given, OperatorJoined | OperatorLine) and given.client != FIRST
+        visitor = isinstance(given, OperatorJoined | OperatorLine) and given.operator != FIRST
         of_client = isinstance(given, Datagram) and self._incoming.of_client(given)
         self._faults += not (visitor or of_client)
         text = f"internal error: {report.splitlines()[-1]}"
@@ -256,7 +256,7 @@ class Session:
         ]
         if isinstance(given, OperatorJoined | OperatorLine) and visitor:
             bye = ipc.Bye(ExitCode.BUG, "", "an internal error of the station", goes_on=True)
-            work.append(Emit(bye, given.client))
+            work.append(Emit(bye, given.operator))
         if isinstance(given, Wake) or self._faults > MAX_FAULTS:
             self._ending.finished = True
             work += self._vehicles.each(
@@ -279,13 +279,13 @@ class Session:
                 return [*of_clients, *of_vehicles, *self._ticks.wake(now_ns)]
             case OperatorJoined():
                 return self._welcome(given, now_ns)
-            case OperatorLine(client, command):
+            case OperatorLine(operator, command):
                 vehicles, bridge = self._vehicles, self._bridge.bridge
-                return [line(self._operators, vehicles, bridge, client, command, now_ns)]
-            case OperatorNoise(client, text):
-                return [Emit(ipc.Trouble(f"not a command: {text}"), client)]
-            case OperatorGone(client, reason):
-                return self._operators.lost(client, reason)
+                return [line(self._operators, vehicles, bridge, operator, command, now_ns)]
+            case OperatorNoise(operator, text):
+                return [Emit(ipc.Trouble(f"not a command: {text}"), operator)]
+            case OperatorGone(operator, reason):
+                return self._operators.lost(operator, reason)
             case SignalCame(name):
                 return self._operators.signalled(name)
             case LinkEvent(_, text, trouble):
@@ -320,8 +320,8 @@ class Session:
         match item:
             case GateInput(Tick()) if owner == STATION:
                 one = self._operators.in_control
-                client = 0 if one is None else one.client
-                orbits = self._vehicles.each(lambda v: v.orbit_sample(client, now_ns))
+                operator = 0 if one is None else one.client
+                orbits = self._vehicles.each(lambda v: v.orbit_sample(operator, now_ns))
                 return [*orbits, *self._vehicles.to_all(item)]
             case GateInput() if owner == STATION:
                 return self._vehicles.to_all(item)
@@ -367,11 +367,11 @@ class Session:
                 return vehicle.ask_mission(item, now_ns)
             case AskOrbit():
                 return vehicle.ask_orbit(item, now_ns)
-            case OrbitSample(client, sample):
+            case OrbitSample(operator, sample):
                 if sample is None:
-                    return self._operators.end_stream(client, vehicle.sysid)
+                    return self._operators.end_stream(operator, vehicle.sysid)
                 autopilot, refusal = vehicle.for_operators(now_ns)
-                return self._operators.line(client, sample, autopilot, refusal, now_ns)
+                return self._operators.line(operator, sample, autopilot, refusal, now_ns)
             case StopTransfer(request_id):
                 return self._vehicles.each(lambda each: each.stop_transfer(request_id))
             case StreamOver(sysid, request_id):
@@ -447,11 +447,11 @@ class Session:
 
     def _welcome(self, joined: OperatorJoined, now_ns: int) -> list[Work]:
         """What everybody else knows already, for one that has just joined."""
-        client, fence = joined.client, self._vehicles.first.fence_shapes
+        operator, fence = joined.operator, self._vehicles.first.fence_shapes
         return [
-            Emit(hello(self._setup, self._log_path, fence, client), client),
-            Emit(self._snapshot(now_ns), client),
-            *self._operators.join(client, joined.name, joined.hold_on_leave),
+            Emit(hello(self._setup, self._log_path, fence, operator), operator),
+            Emit(self._snapshot(now_ns), operator),
+            *self._operators.join(operator, joined.name, joined.hold_on_leave),
         ]
 
     # ---------------------------------------------------------------------------- record

@@ -19,7 +19,7 @@ from gcs.gate.effects import StreamVerdict
 from gcs.gate.inputs import StreamSeen
 from gcs.gate.refusal import Refusal
 from gcs.session import announcements
-from gcs.session.requests import client_of, source_of
+from gcs.session.requests import operator_of, source_of
 from gcs.session.work import Work
 
 EPISODE_NS: Final = 5_000_000_000
@@ -57,36 +57,36 @@ class Streams:
         self._refused: dict[tuple[int, int], _Refused] = {}
         """By operator and system id; 0: those that reach no gate."""
 
-    def goes_on(self, client: int, sample: ipc.Stream, now_ns: int) -> bool:
+    def goes_on(self, operator: int, sample: ipc.Stream, now_ns: int) -> bool:
         """Whether it is a stream: a sample that says something, soon after another one.  One alone
         takes no control."""
         if not _says_something(sample):
             return False
-        before_ns = self._first_ns.get(client)
-        self._first_ns[client] = now_ns
+        before_ns = self._first_ns.get(operator)
+        self._first_ns[operator] = now_ns
         return before_ns is not None and now_ns - before_ns <= BEGUN_WITHIN_NS
 
-    def others(self, client: int, now_ns: int) -> list[tuple[int, int]]:
+    def others(self, operator: int, now_ns: int) -> list[tuple[int, int]]:
         """Who else has a stream that may not be over yet, and at which vehicle; told once."""
         found = [
             key
             for key, last_ns in self._streamed_ns.items()
-            if key[0] != client and now_ns - last_ns <= EPISODE_NS
+            if key[0] != operator and now_ns - last_ns <= EPISODE_NS
         ]
         for key in found:
             del self._streamed_ns[key]
         return found
 
-    def seen(self, client: int, sample: ipc.Stream, now_ns: int) -> StreamSeen:
+    def seen(self, operator: int, sample: ipc.Stream, now_ns: int) -> StreamSeen:
         """The sample for the gate, in NED and as it is on the wire."""
-        source = source_of(client)
-        self._refused_ns.pop(client, None)
-        self._last[client, sample.vehicle] = sample
+        source = source_of(operator)
+        self._refused_ns.pop(operator, None)
+        self._last[operator, sample.vehicle] = sample
         for (who, sysid), refused in self._refused.items():
-            if who == client and sysid and sample.vehicle in (0, sysid):
+            if who == operator and sysid and sample.vehicle in (0, sysid):
                 refused.samples += 1
                 refused.last_ns = now_ns
-        self._streamed_ns[client, sample.vehicle] = now_ns
+        self._streamed_ns[operator, sample.vehicle] = now_ns
         yaw_deg, rate_deg_s = sample.yaw_deg, sample.yaw_rate_deg_s
         attitude = _attitude(sample)
         return StreamSeen(
@@ -100,28 +100,28 @@ class Streams:
         )
 
     def refuse(
-        self, client: int, sample: ipc.Stream, refusal: Refusal, now_ns: int
+        self, operator: int, sample: ipc.Stream, refusal: Refusal, now_ns: int
     ) -> StreamVerdict | None:
         """A sample that does not reach the gate: told once an episode."""
-        refused = self._refused.setdefault((client, 0), _Refused(refusal.code.value, now_ns, 0))
+        refused = self._refused.setdefault((operator, 0), _Refused(refusal.code.value, now_ns, 0))
         refused.samples, refused.last_ns = refused.samples + 1, now_ns
-        last_ns = self._refused_ns.get(client)
-        self._refused_ns[client] = now_ns
+        last_ns = self._refused_ns.get(operator)
+        self._refused_ns[operator] = now_ns
         if last_ns is not None and now_ns - last_ns <= EPISODE_NS:
             return None
         refused.code = refusal.code.value
         numbers = (*asked_numbers(sample), *refusal.numbers)
-        return StreamVerdict(source_of(client), refusal, numbers)
+        return StreamVerdict(source_of(operator), refusal, numbers)
 
     def verdict(self, told: StreamVerdict, sysid: int, now_ns: int) -> StreamVerdict:
         """The gate's, with what the last sample asked for."""
-        client = client_of(told.source)
+        operator = operator_of(told.source)
         if told.refusal is None:
-            self._refused.pop((client, sysid), None)
+            self._refused.pop((operator, sysid), None)
         else:
-            refused = self._refused.setdefault((client, sysid), _Refused("", now_ns))
+            refused = self._refused.setdefault((operator, sysid), _Refused("", now_ns))
             refused.code = told.refusal.code.value
-        sample = self._last.get((client, sysid)) or self._last.get((client, 0))
+        sample = self._last.get((operator, sysid)) or self._last.get((operator, 0))
         asked = () if sample is None else asked_numbers(sample)
         return replace(told, evidence=(*asked, *told.evidence))
 
@@ -130,23 +130,25 @@ class Streams:
         ended = [key for key, each in self._refused.items() if now_ns - each.last_ns > EPISODE_NS]
         return [*self._ended(ended, f"none for {EPISODE_NS / 1e9:.0f} s")]
 
-    def forget(self, client: int) -> list[Work]:
+    def forget(self, operator: int) -> list[Work]:
         """It has left, and its number is never given again."""
         ended = [
-            *self._ended([key for key in self._refused if key[0] == client], "and it has gone")
+            *self._ended([key for key in self._refused if key[0] == operator], "and it has gone")
         ]
-        self._first_ns.pop(client, None)
-        self._refused_ns.pop(client, None)
-        self._streamed_ns = {key: at for key, at in self._streamed_ns.items() if key[0] != client}
-        self._last = {key: each for key, each in self._last.items() if key[0] != client}
+        self._first_ns.pop(operator, None)
+        self._refused_ns.pop(operator, None)
+        self._streamed_ns = {key: at for key, at in self._streamed_ns.items() if key[0] != operator}
+        self._last = {key: each for key, each in self._last.items() if key[0] != operator}
         return ended
 
     def _ended(self, keys: list[tuple[int, int]], why: str) -> Iterator[Work]:
-        for client, sysid in keys:
-            refused = self._refused.pop((client, sysid))
+        for operator, sysid in keys:
+            refused = self._refused.pop((operator, sysid))
             text = f"{refused.samples} samples were refused, {why}"
             samples = float(refused.samples)
-            yield announcements.stream_ended(source_of(client), sysid, refused.code, text, samples)
+            yield announcements.stream_ended(
+                source_of(operator), sysid, refused.code, text, samples
+            )
 
 
 def asked_numbers(sample: ipc.Stream) -> tuple[tuple[str, float], ...]:

@@ -28,33 +28,35 @@ class Subscriptions:
     def __init__(self, times: Times) -> None:
         self._interval_ns = times.real_ns(LEAST_INTERVAL_NS)
         self._told_ns: dict[int, dict[int, int]] = {}
-        """Message id -> client -> when it was told last."""
+        """Message id -> operator -> when it was told last."""
         self._heard_ns: dict[int, int] = {}
         self._asked_ns: dict[int, int] = {}
         self._patience_ns = times.real_ns(PATIENCE_NS)
 
-    def subscribe(self, client: int, names: list[str], now_ns: int) -> list[Effect]:
+    def subscribe(self, operator: int, names: list[str], now_ns: int) -> list[Effect]:
         """In place of what it had; what is no message of the dialect is told."""
-        self.forget(client)
+        self.forget(operator)
         known = [MESSAGES_BY_NAME[name].msgid for name in names if name in MESSAGES_BY_NAME]
         for msgid in known[:MAX_MESSAGES]:
-            self._told_ns.setdefault(msgid, {})[client] = 0
+            self._told_ns.setdefault(msgid, {})[operator] = 0
             self._asked_ns.setdefault(msgid, now_ns)
         unknown = [name for name in names if name not in MESSAGES_BY_NAME]
         if unknown:
             text = f"no such MAVLink message: {', '.join(unknown[:3])}"
-            return [Emit(ipc.Trouble(text, "names are as in the dialect: BATTERY_STATUS"), client)]
+            return [
+                Emit(ipc.Trouble(text, "names are as in the dialect: BATTERY_STATUS"), operator)
+            ]
         if len(known) > MAX_MESSAGES:
             text = f"{len(known)} messages subscribed to: only the first {MAX_MESSAGES} are told"
-            return [Emit(ipc.Trouble(text), client)]
+            return [Emit(ipc.Trouble(text), operator)]
         return []
 
     def missing(self, telemetry: Telemetry, now_ns: int) -> Iterator[CommandLong]:
         """SET_MESSAGE_INTERVAL for what is subscribed to and does not come by itself: many
         vehicles, ArduPilot above all, send little unasked."""
-        for msgid, clients in self._told_ns.items():
+        for msgid, operators in self._told_ns.items():
             heard_ns, asked_ns = self._heard_ns.get(msgid, 0), self._asked_ns[msgid]
-            if clients and now_ns - max(heard_ns, asked_ns) > self._patience_ns:
+            if operators and now_ns - max(heard_ns, asked_ns) > self._patience_ns:
                 self._asked_ns[msgid] = now_ns
                 yield message_interval(telemetry, msgid, ASKED_HZ)
 
@@ -63,22 +65,22 @@ class Subscriptions:
         """Ids of the messages that somebody has, or had, subscribed to."""
         return self._told_ns
 
-    def forget(self, client: int) -> None:
+    def forget(self, operator: int) -> None:
         """It has left."""
-        for clients in self._told_ns.values():
-            clients.pop(client, None)
+        for operators in self._told_ns.values():
+            operators.pop(operator, None)
 
     def heard(self, frame: Frame, now_ns: int) -> list[Effect]:
         """A good frame of the vehicle: who is told of it."""
-        clients = self._told_ns.get(frame.msgid)
-        if not clients:
+        operators = self._told_ns.get(frame.msgid)
+        if not operators:
             return []
         self._heard_ns[frame.msgid] = now_ns
-        due = [each for each, told in clients.items() if now_ns - told >= self._interval_ns]
+        due = [each for each, told in operators.items() if now_ns - told >= self._interval_ns]
         if not due:
             return []
         fields = fields_of(frame)
         event = ipc.MessageEvent(frame.name, now_ns, frame.sysid, frame.compid, fields)
-        for client in due:
-            clients[client] = now_ns
-        return [Emit(event, client) for client in due]
+        for operator in due:
+            operators[operator] = now_ns
+        return [Emit(event, operator) for operator in due]

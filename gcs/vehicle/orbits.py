@@ -40,11 +40,11 @@ TOLD_NS: Final = 500_000_000
 class Flown:
     """An orbit that is flown for an operator."""
 
-    __slots__ = ("client", "guidance", "last_ns", "task", "told_ns")
+    __slots__ = ("guidance", "last_ns", "operator", "task", "told_ns")
 
-    def __init__(self, client: int, guidance: Guidance, task: int, now_ns: int) -> None:
+    def __init__(self, operator: int, guidance: Guidance, task: int, now_ns: int) -> None:
         """`task` is the request with which the gate's stream ends."""
-        self.client = client
+        self.operator = operator
         self.guidance = guidance
         self.task = task
         self.last_ns = now_ns
@@ -72,7 +72,7 @@ class Orbits:
             return [refused, Log(Level.WARNING, NODE, text)]
         work: list[Work] = []
         if orbit is not None:
-            self._asked[asked.request_id] = asked.client, orbit
+            self._asked[asked.request_id] = asked.operator, orbit
             work.append(Log(Level.INFO, NODE, _in_words(orbit)))
         return [*work, AskGate(asked.request_id, BeginStream())]
 
@@ -89,7 +89,7 @@ class Orbits:
         wanted = _asked_for(asked.ask.orbit or ipc.Circle())
         if isinstance(wanted, Refusal):
             return wanted
-        own = self._flown is not None and self._flown.client == asked.client
+        own = self._flown is not None and self._flown.operator == asked.operator
         before = self._flown.guidance.orbit if own and self._flown is not None else None
         orbit = orbit_of(wanted, pos_ned, telemetry.yaw_rad, before, policy.stream)
         if isinstance(orbit, Refusal):
@@ -102,20 +102,20 @@ class Orbits:
         memory = gate.memory
         if asked is None or told.ruling is not Ruling.ACCEPTED or memory.pos_ned is None:
             return
-        client, orbit = asked
+        operator, orbit = asked
         task = told.request_id if memory.task is None else memory.task.requested.request_id
         braking = policy.braking_of(memory.autopilot)
         guidance = Guidance(orbit, memory.pos_ned, braking, policy.stream)
-        self._flown = Flown(client, guidance, task, now_ns)
+        self._flown = Flown(operator, guidance, task, now_ns)
 
     def ended(self, request_id: int) -> None:
         """A request is over, and with it the orbit that it has asked for."""
         if self._flown is not None and self._flown.task == request_id:
             self._flown = None
 
-    def streams_itself(self, client: int) -> list[Work]:
+    def streams_itself(self, operator: int) -> list[Work]:
         """This operator sends samples of its own: they are flown instead."""
-        if self._flown is None or self._flown.client != client:
+        if self._flown is None or self._flown.operator != operator:
             return []
         self._flown = None
         text = "given up: its operator streams setpoints of its own"
@@ -133,24 +133,24 @@ class Orbits:
         flown = self._flown
         if flown is None or telemetry is None or telemetry.pos_ned is None:
             return []
-        memory, client = gate.memory, flown.client
-        if memory.flown_state is not State.STREAMING or memory.streamer != source_of(client):
+        memory, operator = gate.memory, flown.operator
+        if memory.flown_state is not State.STREAMING or memory.streamer != source_of(operator):
             self._flown = None
             return []
         age_ns = now_ns - telemetry.position_ns
         if age_ns > round(policy.stream.position_age_s * 1e9):
             return []
-        if in_control != client or flown.guidance.done:
+        if in_control != operator or flown.guidance.done:
             self._flown = None
             over = Log(Level.INFO, NODE, f"over after {_turns(flown.guidance)}")
-            return [over, OrbitSample(client, None)]
+            return [over, OrbitSample(operator, None)]
         place = Place(telemetry.pos_ned, telemetry.v_ned, age_ns / 1e9)
         setpoint = flown.guidance.step(place, (now_ns - flown.last_ns) / 1e9)
         flown.last_ns = now_ns
         yaw_deg = None if setpoint.yaw_rad is None else math.degrees(setpoint.yaw_rad)
         v_enu = enu_from_ned(setpoint.v_ned)
         sample = ipc.Stream(v_enu=v_enu, yaw_deg=yaw_deg, vehicle=telemetry.sysid)
-        return [OrbitSample(client, sample), *self._told(flown, telemetry, now_ns)]
+        return [OrbitSample(operator, sample), *self._told(flown, telemetry, now_ns)]
 
     def _told(self, flown: Flown, telemetry: Telemetry, now_ns: int) -> list[Work]:
         """To its operator, now and then: what is flown, for a map to show it."""
@@ -174,7 +174,7 @@ class Orbits:
             note=orbit.note,
             vehicle=telemetry.sysid,
         )
-        return [Emit(event, flown.client)]
+        return [Emit(event, flown.operator)]
 
 
 def _asked_for(circle: ipc.Circle) -> Asked | Refusal:

@@ -93,7 +93,7 @@ def introduction(setup: Setup, start_ns: int) -> list[Effect]:
 
 
 def hello(
-    setup: Setup, log_path: str, fence: Iterable[FenceShape] = (), client: int = FIRST
+    setup: Setup, log_path: str, fence: Iterable[FenceShape] = (), operator: int = FIRST
 ) -> ipc.Hello:
     """The first event that an operator's program is told."""
     endpoints, policy = list(setup.endpoints), setup.policy.name
@@ -103,7 +103,7 @@ def hello(
         endpoints,
         policy,
         list(fence),
-        client=client,
+        client=operator,
         client_ports=list(setup.client_ports),
     )
 

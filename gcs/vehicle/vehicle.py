@@ -310,9 +310,9 @@ class Vehicle:
             in_control, parts.telemetry, parts.port.gate, parts.port.policy, now_ns
         )
 
-    def streamed_by(self, client: int) -> list[Work]:
+    def streamed_by(self, operator: int) -> list[Work]:
         """An operator sends samples of its own: an orbit of its is not flown any more."""
-        return self._parts.orbits.streams_itself(client)
+        return self._parts.orbits.streams_itself(operator)
 
     def file(self, news: FileRead | FileWritten, now_ns: int) -> list[Work]:
         parts = self._parts

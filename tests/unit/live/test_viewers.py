@@ -266,7 +266,7 @@ def test_one_viewer_that_calls_too_often_does_not_keep_another_from_stopping() -
 
 
 def test_a_crowd_of_new_viewers_stays_under_what_the_station_takes_of_one_program() -> None:
-    """50 lines a second, 100 at once (`client_sockets`)."""
+    """50 lines a second, 100 at once (`operator_sockets`)."""
     script = Script()
     sent = 0
     for tenth in range(100):  # ten seconds

@@ -15,10 +15,10 @@ from gcs import ipc
 from gcs.session.effects import Effect, Finish, Record
 from gcs.session.inputs import Input, RecorderChanged, Wake
 from gcs.shell.client_ports import ClientPorts
-from gcs.shell.client_sockets import ClientSockets
 from gcs.shell.clock import Clock
 from gcs.shell.endpoints import Endpoint, Kind
 from gcs.shell.loop import Loop
+from gcs.shell.operator_sockets import OperatorSockets
 from gcs.shell.pipes import LineSink, LineSource
 from gcs.shell.recording import RecorderNews, Recording
 from gcs.shell.signals import SignalSource
@@ -224,7 +224,7 @@ class Rig:
     def __init__(
         self,
         links: int = 2,
-        clients: ClientSockets | None = None,
+        others: OperatorSockets | None = None,
         on_snapshot: Callable[[ipc.Snapshot], None] = lambda _: None,
         recording: Recording | None = None,
         client_ports: ClientPorts | None = None,
@@ -247,7 +247,7 @@ class Rig:
             recording or self.recording,
             self.signals,
             PaperSim(sim_fd),
-            clients,
+            others,
             on_snapshot,
             client_ports,
         )

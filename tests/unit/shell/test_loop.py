@@ -42,9 +42,9 @@ from gcs.session.inputs import (
     Wake,
 )
 from gcs.shell.client_ports import ClientPorts
-from gcs.shell.client_sockets import ClientSockets, Connection
 from gcs.shell.client_table import Arrival
 from gcs.shell.loop import GATHER_NS, MAX_DATAGRAMS_A_TURN, MAX_PLAN_BYTES
+from gcs.shell.operator_sockets import Connection, OperatorSockets
 from gcs.shell.recording import Recording
 from gcs.station.frame_intake import FramesRaisedError
 from tests.unit.shell.rig import DONE, EXIT_BUG, MS, START_NS, TICK_NS, Rig, recorded
@@ -415,7 +415,7 @@ def test_an_event_on_the_pipe_is_one_line_of_json(rig: Rig) -> None:
 # --------------------------------------------------------------------- further operators
 
 
-class PaperClients(ClientSockets):
+class PaperOperators(OperatorSockets):
     """Connections of the test's making: what they bring, and what they are told."""
 
     def __init__(self) -> None:
@@ -432,7 +432,7 @@ class PaperClients(ClientSockets):
         return False
 
     @property
-    def sources(self) -> list[ClientSockets | Connection]:
+    def sources(self) -> list[OperatorSockets | Connection]:
         return [self]
 
     @property
@@ -447,11 +447,11 @@ class PaperClients(ClientSockets):
         while self.brings:
             yield self.brings.pop(0)
 
-    def tell(self, line: bytes, client: int, *, droppable: bool, last: bool) -> None:
-        self.told.append((type(ipc.decode_event(line)).__name__, client, droppable, last))
+    def tell(self, line: bytes, operator: int, *, droppable: bool, last: bool) -> None:
+        self.told.append((type(ipc.decode_event(line)).__name__, operator, droppable, last))
 
-    def allow_more(self, client: int) -> None:
-        self.may_have_more.append(client)
+    def allow_more(self, operator: int) -> None:
+        self.may_have_more.append(operator)
 
     def close(self) -> None:
         self._near.close()
@@ -459,13 +459,13 @@ class PaperClients(ClientSockets):
 
 
 @pytest.fixture
-def clients() -> Iterator[PaperClients]:
-    made = PaperClients()
+def operators() -> Iterator[PaperOperators]:
+    made = PaperOperators()
     yield made
     made.close()
 
 
-class Listening(ClientSockets):
+class Listening(OperatorSockets):
     """Nobody is connected, until somebody knocks."""
 
     let_in = False
@@ -479,20 +479,20 @@ class Listening(ClientSockets):
 def test_who_connects_where_nobody_was_is_let_in() -> None:
     near, far = socket.socketpair()
     with near, far:
-        clients = Listening(near)
+        operators = Listening(near)
         seen: list[bool] = []
-        rig = Rig(clients=clients)
+        rig = Rig(others=operators)
         rig.run(
-            lambda: seen.append(clients.let_in),
+            lambda: seen.append(operators.let_in),
             lambda: far.send(b"x") and None,
-            lambda: seen.append(clients.let_in),
+            lambda: seen.append(operators.let_in),
         )
         rig.close()
         assert seen == [False, True]
 
 
-def test_an_event_goes_to_whom_it_is_for(clients: PaperClients) -> None:
-    rig = Rig(clients=clients)
+def test_an_event_goes_to_whom_it_is_for(operators: PaperOperators) -> None:
+    rig = Rig(others=operators)
     snapshot = ipc.Snapshot(0, "", "", "", [], 0.0, "", False, 0.0)
     rig.core.answers[FIRST] = [
         Emit(ipc.Trouble("for all")),
@@ -504,7 +504,7 @@ def test_an_event_goes_to_whom_it_is_for(clients: PaperClients) -> None:
     ]
     rig.run(lambda: rig.links[0].bring(b"first"))
     assert texts(rig.events()) == ["for all", "for the first"]
-    assert clients.told == [
+    assert operators.told == [
         ("Trouble", 0, False, False),
         ("Trouble", 2, False, False),
         ("Snapshot", 0, True, False),
@@ -514,20 +514,20 @@ def test_an_event_goes_to_whom_it_is_for(clients: PaperClients) -> None:
     rig.close()
 
 
-def test_between_two_lines_of_others_the_deadline_is_met(clients: PaperClients) -> None:
-    rig = Rig(clients=clients)
+def test_between_two_lines_of_others_the_deadline_is_met(operators: PaperOperators) -> None:
+    rig = Rig(others=operators)
     lines = [OperatorLine(2, ipc.Ask(number, "land")) for number in range(3)]
     rig.core.does[lines[0]] = lambda: rig.advance(60)
-    clients.brings = [*lines]
+    operators.brings = [*lines]
     rig.run(lambda: None)
     assert rig.core.inputs[:4] == [lines[0], Wake(), lines[1], lines[2]]
     rig.close()
 
 
 def test_the_first_operator_s_good_bye_ends_its_pipe_and_not_the_loop(
-    clients: PaperClients,
+    operators: PaperOperators,
 ) -> None:
-    rig = Rig(clients=clients)
+    rig = Rig(others=operators)
     rig.core.answers[FIRST] = [
         Emit(ipc.Bye(0, "", "kept", goes_on=True), 1),
         Emit(ipc.Trouble("for those who stay")),
@@ -536,13 +536,15 @@ def test_the_first_operator_s_good_bye_ends_its_pipe_and_not_the_loop(
     (bye,) = rig.events()
     assert isinstance(bye, ipc.Bye)
     assert not any(isinstance(given, OperatorGone) for given in rig.core.inputs)
-    assert ("Trouble", 0, False, False) in clients.told
+    assert ("Trouble", 0, False, False) in operators.told
     rig.close()
 
 
-def test_every_snapshot_is_shown_to_whoever_describes_the_station(clients: PaperClients) -> None:
+def test_each_snapshot_is_shown_to_whoever_describes_the_station(
+    operators: PaperOperators,
+) -> None:
     seen: list[ipc.Snapshot] = []
-    rig = Rig(clients=clients, on_snapshot=seen.append)
+    rig = Rig(others=operators, on_snapshot=seen.append)
     snapshot = ipc.Snapshot(0, "", "", "", [], 0.0, "", False, 0.0)
     rig.core.answers[FIRST] = [Emit(snapshot), Emit(snapshot, 2)]
     rig.run(lambda: rig.links[0].bring(b"first"))
@@ -576,25 +578,25 @@ def test_what_cannot_be_recorded_is_a_fault_of_the_datagram_that_it_was_in(
 
 
 def test_who_watches_topics_is_told_of_them_until_it_has_gone(
-    clients: PaperClients, tmp_path: Path
+    operators: PaperOperators, tmp_path: Path
 ) -> None:
     recorder = Recorder.open(tmp_path, "test", "20260101-000000", START_NS)
     line = LogEvent(START_NS, 2, "gate", "Complete")
     watch = OperatorLine(2, ipc.WatchTopics())
-    rig = Rig(clients=clients, recording=Recording(recorder))
+    rig = Rig(others=operators, recording=Recording(recorder))
     rig.core.answers[watch] = [ShowTopics(2)]
     rig.core.answers[FIRST] = [Record(line)]
-    clients.brings = [watch]
+    operators.brings = [watch]
     rig.run(
         lambda: None,
         lambda: rig.links[0].bring(b"first"),
-        lambda: clients.brings.append(OperatorGone(2, "it has left")),
+        lambda: operators.brings.append(OperatorGone(2, "it has left")),
         lambda: rig.links[0].bring(b"first"),
     )
-    assert clients.may_have_more == [2]
-    kinds = [told[0] for told in clients.told]
+    assert operators.may_have_more == [2]
+    kinds = [told[0] for told in operators.told]
     topics = kinds.count("Topic")
-    assert set(clients.told) == {("Topic", 2, False, False), ("TopicMessage", 2, False, False)}
+    assert set(operators.told) == {("Topic", 2, False, False), ("TopicMessage", 2, False, False)}
     assert topics == kinds.count("TopicMessage"), "one message of each: the line, and what is first"
     assert recorder.close(START_NS)
     rig.close()
@@ -717,11 +719,11 @@ def test_what_clients_send_is_handed_on_and_what_is_for_them_goes_to_their_ports
     rig = Rig(links=2, client_ports=ports)
     came: list[Arrival] = [ClientCame(2, "udp 127.0.0.1:5", False), Datagram(2, b"theirs")]
     ports.brings = [*came]
-    rig.core.answers[came[1]] = [Transmit(0, b"for the vehicle"), Transmit(2, b"for the client")]
+    rig.core.answers[came[1]] = [Transmit(0, b"for the vehicle"), Transmit(2, b"for the operator")]
     rig.run(lambda: None)
     assert rig.core.inputs[:2] == came
     assert rig.links[0].sent == [b"for the vehicle"]
-    assert ports.sent == [(2, b"for the client")]
+    assert ports.sent == [(2, b"for the operator")]
     rig.close()
 
 

@@ -118,7 +118,7 @@ def test_no_words_of_an_operator_who_joined_end_the_station(session: Session) ->
         line = inputs.OperatorLine(2, ipc.Ask(1, "land"))
         effects = session.fault(line, "ValueError: bad", 1)
         assert not finished(effects)
-        told = [e.event for e in effects if isinstance(e, Emit) and e.client == 2]
+        told = [e.event for e in effects if isinstance(e, Emit) and e.operator == 2]
         assert isinstance(told[-1], ipc.Bye), "its connection ends"
 
 

@@ -28,7 +28,7 @@ def join(script: Script, client: int = SECOND, *, hold_on_leave: bool = True) ->
 
 def to(client: int, effects: list[Effect]) -> list[ipc.Event]:
     """What one operator is told, without the log."""
-    events = [e.event for e in effects if isinstance(e, Emit) and e.client in (client, EVERYONE)]
+    events = [e.event for e in effects if isinstance(e, Emit) and e.operator in (client, EVERYONE)]
     return [event for event in events if not isinstance(event, ipc.LogEvent)]
 
 

@@ -29,7 +29,7 @@ NODE = "link"
 
 
 @dataclass(frozen=True, slots=True)
-class Client:
+class Operator:
     """One operator's program."""
 
     number: int
@@ -41,12 +41,12 @@ class Client:
         return f"operator {self.number} ({self.name})"
 
 
-class Clients:
+class OperatorControl:
     """The operators that are there.  Their numbers are never given a second time."""
 
     def __init__(self, first_name: str, first_looks: bool = False) -> None:
         """`first_looks`: whoever started the station does not begin in control of it (a bridge)."""
-        self._there = {FIRST: Client(FIRST, first_name)}
+        self._there = {FIRST: Operator(FIRST, first_name)}
         self._by_default = NOBODY if first_looks else FIRST
         self._in_control = self._by_default
         self._leaving: dict[int, int] = {}
@@ -54,46 +54,46 @@ class Clients:
 
     @property
     def in_control(self) -> int:
-        """The client number, or NOBODY."""
+        """The operator number, or NOBODY."""
         return self._in_control
 
     @property
     def first_is_alone(self) -> bool:
         """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
-        return all(client == FIRST or client >= FIRST_NUMBER for client in self._there)
+        return all(operator == FIRST or operator >= FIRST_NUMBER for operator in self._there)
 
-    def name(self, client: int) -> str:
+    def name(self, operator: int) -> str:
         """Empty where it is not there."""
-        known = self._there.get(client)
+        known = self._there.get(operator)
         return known.name if known else ""
 
-    def __contains__(self, client: int) -> bool:
-        return client in self._there
+    def __contains__(self, operator: int) -> bool:
+        return operator in self._there
 
     # ----------------------------------------------------------------------- come and go
 
-    def join(self, client: int, name: str, hold_on_leave: bool) -> list[Work]:
+    def join(self, operator: int, name: str, hold_on_leave: bool) -> list[Work]:
         """Another one has connected."""
-        joined = self._there[client] = Client(client, name, hold_on_leave)
+        joined = self._there[operator] = Operator(operator, name, hold_on_leave)
         return [Log(Level.DEBUG, NODE, f"{joined.label} joined"), self._told()]
 
-    def leave(self, client: int, now_ns: int) -> list[Work]:
+    def leave(self, operator: int, now_ns: int) -> list[Work]:
         """It goes in good order: the gate holds the vehicle where that is wanted, and once it is
         seen to hold, `farewells` says good-bye."""
-        leaving = self._there.get(client)
-        if leaving is None or client in self._leaving:
+        leaving = self._there.get(operator)
+        if leaving is None or operator in self._leaving:
             return []
-        hold = leaving.hold_on_leave and client == self._in_control
-        self._leaving[client] = now_ns + LEAVING_NS if hold else now_ns
+        hold = leaving.hold_on_leave and operator == self._in_control
+        self._leaving[operator] = now_ns + LEAVING_NS if hold else now_ns
         return self._hold("left") if hold else []
 
-    def lost(self, client: int, reason: str) -> list[Work]:
+    def lost(self, operator: int, reason: str) -> list[Work]:
         """Its connection ended without a word, perhaps after one: an operator who was in control
         is lost, and the vehicle is held."""
-        gone = self._there.get(client)
+        gone = self._there.get(operator)
         if gone is None:
             return []
-        held = client in self._leaving or client != self._in_control
+        held = operator in self._leaving or operator != self._in_control
         return [*([] if held else self._hold(reason)), *self._forget(gone)]
 
     @property
@@ -104,14 +104,16 @@ class Clients:
     def farewells(self, settled: bool, now_ns: int) -> list[int]:
         """Those who left and need not wait any longer: the vehicle is seen to hold, or overdue."""
         return [
-            client for client, until_ns in self._leaving.items() if settled or now_ns >= until_ns
+            operator
+            for operator, until_ns in self._leaving.items()
+            if settled or now_ns >= until_ns
         ]
 
-    def gone(self, client: int) -> list[Work]:
+    def gone(self, operator: int) -> list[Work]:
         """The good-bye was said."""
-        return self._forget(self._there[client])
+        return self._forget(self._there[operator])
 
-    def _forget(self, gone: Client) -> list[Work]:
+    def _forget(self, gone: Operator) -> list[Work]:
         del self._there[gone.number]
         self._leaving.pop(gone.number, None)
         work: list[Work] = [Log(Level.DEBUG, NODE, f"{gone.label} left")]
@@ -128,22 +130,22 @@ class Clients:
 
     # --------------------------------------------------------------------------- control
 
-    def give_where_free(self, client: int, ask: ipc.Ask) -> list[Work]:
+    def give_where_free(self, operator: int, ask: ipc.Ask) -> list[Work]:
         """Before a request that `refusal` did not refuse: where nobody is in control, the first
         who asks for something that needs it gets it."""
         if ask.word in ALWAYS_HEARD or self._in_control != NOBODY:
             return []
-        return self._give(client)
+        return self._give(operator)
 
-    def refusal(self, client: int, ask: ipc.Ask) -> Refusal | None:
+    def refusal(self, operator: int, ask: ipc.Ask) -> Refusal | None:
         """Why this operator may not ask for it, if it may not."""
-        if client in self._leaving or client not in self._there:
+        if operator in self._leaving or operator not in self._there:
             return Refusal(Code.OPERATOR_LOST, "this operator has left")
-        if self._in_control in (client, NOBODY) or (ask.word in ALWAYS_HEARD and not ask.force):
+        if self._in_control in (operator, NOBODY) or (ask.word in ALWAYS_HEARD and not ask.force):
             return None
         other = self._there[self._in_control].label
         how = "take it over with --take, or by the words `station take`"
-        if client >= FIRST_NUMBER:
+        if operator >= FIRST_NUMBER:
             how = "MAV_CMD_REQUEST_OPERATOR_CONTROL takes it over"
         return Refusal(
             Code.OTHER_OPERATOR,
@@ -151,25 +153,25 @@ class Clients:
             (("in_control", float(self._in_control)),),
         )
 
-    def take(self, client: int) -> list[Work]:
+    def take(self, operator: int) -> list[Work]:
         """It takes control over from whoever has it."""
-        return [] if client == self._in_control else self._give(client)
+        return [] if operator == self._in_control else self._give(operator)
 
-    def release(self, client: int) -> list[Work]:
+    def release(self, operator: int) -> list[Work]:
         """It gives control up, and the first who asks gets it.
 
         Until then nobody is in control, so the vehicle is held as for an operator who is lost.
-        Hovering would not do: a stream of the same client that goes on would get control again.
+        Hovering would not do: a stream of the same operator that goes on would get control again.
         Who wants a goal flown on lets another one take over.
         """
-        if client != self._in_control:
+        if operator != self._in_control:
             return []
-        why = f"{self._there[client].label} has released control"
+        why = f"{self._there[operator].label} has released control"
         return [*self._hold(why), *self._give(NOBODY)]
 
-    def _give(self, client: int) -> list[Work]:
-        before, self._in_control = self._there.get(self._in_control), client
-        now = self._there.get(client)
+    def _give(self, operator: int) -> list[Work]:
+        before, self._in_control = self._there.get(self._in_control), operator
+        now = self._there.get(operator)
         text = "nobody is in control of the station"
         if now is not None:
             text = f"{now.label} is in control of the station"

@@ -12,19 +12,19 @@ import pytest
 from gcs import ipc
 from gcs.session.effects import EVERYONE
 from gcs.session.inputs import Input, OperatorGone, OperatorJoined, OperatorLine, OperatorNoise
-from gcs.shell import client_sockets
-from gcs.shell.client_sockets import ClientSockets
+from gcs.shell import operator_sockets
+from gcs.shell.operator_sockets import OperatorSockets
 
 pytestmark = pytest.mark.slow  # sockets
 
 
 class Bench:
-    """A listening socket, the clients' ends of connections, and a clock of the test's own."""
+    """A listening socket, the operators' ends of connections, and a clock of the test's own."""
 
     def __init__(self, token: str = "") -> None:
         self.time_s = 100.0
         self._listener = socket.create_server(("127.0.0.1", 0))
-        self.clients = ClientSockets(self._listener, token, lambda: self.time_s)
+        self.operators = OperatorSockets(self._listener, token, lambda: self.time_s)
         self.ends: list[socket.socket] = []
 
     def connect(self, *lines: bytes) -> socket.socket:
@@ -43,16 +43,16 @@ class Bench:
         """Turns of the loop in which everything is looked at."""
         given: list[Input] = []
         for _ in range(count):
-            given += self.clients.turn([*self.clients.sources], [*self.clients.sinks])
+            given += self.operators.turn([*self.operators.sources], [*self.operators.sinks])
         return given
 
-    def tell(self, event: ipc.Event, client: int = EVERYONE) -> None:
+    def tell(self, event: ipc.Event, operator: int = EVERYONE) -> None:
         droppable = isinstance(event, ipc.Snapshot)
         last = isinstance(event, ipc.Bye)
-        self.clients.tell(ipc.encode(event), client, droppable=droppable, last=last)
+        self.operators.tell(ipc.encode(event), operator, droppable=droppable, last=last)
 
     def close(self) -> None:
-        self.clients.close()
+        self.operators.close()
         for end in self.ends:
             end.close()
 
@@ -65,7 +65,7 @@ def bench() -> Iterator[Bench]:
 
 
 def heard(end: socket.socket) -> list[ipc.Event]:
-    """What the client can read by now, to the end where the station has closed."""
+    """What the operator can read by now, to the end where the station has closed."""
     end.settimeout(0.05)
     data = b""
     try:
@@ -77,7 +77,7 @@ def heard(end: socket.socket) -> list[ipc.Event]:
 
 
 def dropped_because(end: socket.socket) -> str:
-    """The last that a client is told by a station that closes the connection."""
+    """The last that a operator is told by a station that closes the connection."""
     *_, trouble = heard(end)
     assert isinstance(trouble, ipc.Trouble)
     assert end.recv(1) == b"", "it is closed"
@@ -111,7 +111,7 @@ def test_the_session_hears_nothing_of_one_that_has_not_joined(bench: Bench) -> N
     for data in (b"garbage\n", b"\xff\xfe\n", ipc.encode(LAND), b"half", b""):
         bench.connect(data)
     assert bench.turns() == []
-    bench.time_s += client_sockets.JOIN_WAIT_S + 0.1
+    bench.time_s += operator_sockets.JOIN_WAIT_S + 0.1
     assert bench.turns() == []
     assert [dropped_because(end) for end in bench.ends] == [
         *["the first line must be a `join`"] * 3,
@@ -137,7 +137,7 @@ def test_a_port_asks_for_the_token_of_the_description(token: str, joins: bool) -
 
 def test_a_name_is_cut(bench: Bench) -> None:
     bench.connect(ipc.encode(ipc.Join("x" * 5000)))
-    assert bench.turns() == [OperatorJoined(2, "x" * client_sockets.NAME_LETTERS)]
+    assert bench.turns() == [OperatorJoined(2, "x" * operator_sockets.NAME_LETTERS)]
 
 
 # ------------------------------------------------------------------------------------ limits
@@ -155,8 +155,8 @@ def test_a_line_in_pieces_is_one_line(bench: Bench) -> None:
 
 def test_a_line_that_does_not_end_is_dropped(bench: Bench) -> None:
     end = bench.joined()
-    end.sendall(b"x" * (client_sockets.MAX_LINE_BYTES + 1))
-    why = f"a line of more than {client_sockets.MAX_LINE_BYTES} bytes"
+    end.sendall(b"x" * (operator_sockets.MAX_LINE_BYTES + 1))
+    why = f"a line of more than {operator_sockets.MAX_LINE_BYTES} bytes"
     assert bench.turns() == [OperatorGone(2, why)]
     assert dropped_because(end) == why
 
@@ -165,7 +165,7 @@ def test_a_flood_is_handed_on_a_few_lines_a_turn_and_ended(bench: Bench) -> None
     end = bench.joined()
     end.sendall(ipc.encode(LAND) * 150)
     first = bench.turns(1)
-    assert 0 < len(first) <= client_sockets.MAX_LINES_A_TURN + 1
+    assert 0 < len(first) <= operator_sockets.MAX_LINES_A_TURN + 1
     bench.turns(40)
     assert dropped_because(end) == "more than 50 lines a second"
 
@@ -190,7 +190,7 @@ def test_noise_is_told_ten_times(bench: Bench) -> None:
     end.sendall(b"land!\n" * 11)
     *noise, gone = bench.turns()
     assert len(noise) == 10
-    assert all(isinstance(given, OperatorNoise) and given.client == 2 for given in noise)
+    assert all(isinstance(given, OperatorNoise) and given.operator == 2 for given in noise)
     assert gone == OperatorGone(2, "more than 10 lines that are no command")
 
 
@@ -204,7 +204,7 @@ def test_whatever_is_no_command_is_noise(bench: Bench, line: bytes) -> None:
 
 
 def test_one_client_more_than_there_is_room_for_ends_the_one_silent_longest(bench: Bench) -> None:
-    for _ in range(client_sockets.MAX_CLIENTS):
+    for _ in range(operator_sockets.MAX_OPERATORS):
         bench.time_s += 0.1
         bench.joined()
     bench.time_s += 0.1
@@ -214,12 +214,12 @@ def test_one_client_more_than_there_is_room_for_ends_the_one_silent_longest(benc
     gone, joined, line, *_ = bench.turns()
     assert gone == OperatorGone(3, "too many operators: you were silent")
     assert isinstance(joined, OperatorJoined)
-    assert line == OperatorLine(joined.client, ipc.Ask(1, "abort"))
+    assert line == OperatorLine(joined.operator, ipc.Ask(1, "abort"))
 
 
 def test_room_is_made_first_by_those_who_have_not_joined(bench: Bench) -> None:
     bench.joined()
-    for _ in range(client_sockets.MAX_CLIENTS):
+    for _ in range(operator_sockets.MAX_OPERATORS):
         bench.connect()
     bench.connect(ipc.encode(ipc.Join("gcs abort")))
     given = bench.turns(10)
@@ -270,22 +270,22 @@ def test_a_client_that_never_reads_costs_snapshots_first_and_then_its_connection
 
 def test_what_waits_for_a_client_that_does_not_read_is_bounded(bench: Bench) -> None:
     bench.joined()
-    (connection,) = bench.clients._connections
+    (connection,) = bench.operators._connections
     for _ in range(3_000):
         bench.tell(ipc.Trouble("x" * 1_000))
-        assert connection._queued_bytes <= client_sockets.MAX_QUEUED_BYTES
+        assert connection._queued_bytes <= operator_sockets.MAX_QUEUED_BYTES
     assert bench.turns() == [OperatorGone(2, "its connection ended")]
 
 
 def test_more_may_wait_for_one_that_watches_topics_and_that_is_bounded_too(bench: Bench) -> None:
     bench.joined()
-    bench.clients.allow_more(2)
-    (connection,) = bench.clients._connections
+    bench.operators.allow_more(2)
+    (connection,) = bench.operators._connections
     most = 0
     for _ in range(9_000):
         bench.tell(ipc.Trouble("x" * 1_000))
         most = max(most, connection._queued_bytes)
-    assert client_sockets.MAX_QUEUED_BYTES < most <= client_sockets.MAX_QUEUED_TOPIC_BYTES
+    assert operator_sockets.MAX_QUEUED_BYTES < most <= operator_sockets.MAX_QUEUED_TOPIC_BYTES
     assert bench.turns() == [OperatorGone(2, "its connection ended")]
 
 

@@ -25,36 +25,36 @@ from gcs.session.inputs import (
 )
 from gcs.session.requests import FIRST
 
-MAX_CLIENTS = 16
+MAX_OPERATORS = 16
 MAX_ACCEPTS_A_TURN = 4
 MAX_READ_BYTES = 8_192
-"""Of one client in one turn."""
+"""Of one operator in one turn."""
 MAX_LINE_BYTES = 16_384
 MAX_LINES_A_TURN = 8
-"""Of one client in one turn; the rest waits for the next one."""
+"""Of one operator in one turn; the rest waits for the next one."""
 LINES_A_SECOND = 50.0
 BURST_LINES = 100.0
 MAX_NOISE = 10
-"""Lines that are no command; then the client is broken."""
+"""Lines that are no command; then the operator is broken."""
 JOIN_WAIT_S = 2.0
 MAX_QUEUED_BYTES = 256 << 10
 MAX_QUEUED_TOPIC_BYTES = 4 << 20
-"""Of a client that watches the topics of the record: the schemas of a fleet's come at once."""
+"""Of an operator that watches the topics of the record: the schemas of a fleet's come at once."""
 UNREAD_S = 10.0
-"""A client that has taken nothing for so long while something waited for it does not read."""
+"""An operator that has taken nothing for so long while something waited for it does not read."""
 SEND_BUFFER_BYTES = 64 << 10
 NAME_LETTERS = 80
 
 
 class Connection:
-    """One client: what it said and is still to be handed on, what waits for it."""
+    """One operator: what it said and is still to be handed on, what waits for it."""
 
     def __init__(self, sock: socket.socket, now_s: float) -> None:
         sock.setblocking(False)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
         self._socket = sock
         self.number = 0
-        """The client's, once it has joined."""
+        """The operator's, once it has joined."""
         self.closing = False
         """Its good-bye is queued: nothing more is read, and it is closed once that is sent."""
         self.since_s = self.heard_s = now_s
@@ -152,7 +152,7 @@ class Connection:
         self._socket.close()
 
 
-class ClientSockets:
+class OperatorSockets:
     """All connections.  Client numbers are never used twice; `FIRST` is the operator's pipes'."""
 
     def __init__(
@@ -178,7 +178,7 @@ class ClientSockets:
         return not self._connections
 
     @property
-    def sources(self) -> list[ClientSockets | Connection]:
+    def sources(self) -> list[OperatorSockets | Connection]:
         """What `select` should watch for reading."""
         ready = (each for each in self._connections if not each.closing and not each.lines)
         return [self, *ready]
@@ -196,7 +196,7 @@ class ClientSockets:
     # ----------------------------------------------------------------------------- turn
 
     def turn(self, readable: Sequence[object], writable: Sequence[object]) -> Iterator[Input]:
-        """Do what a turn of the loop has for the clients; what the session is to hear of them.
+        """Do what a turn of the loop has for the operators; what the session is to hear of them.
 
         A generator, so that whoever takes the inputs can do what is more urgent between two.
         """
@@ -223,7 +223,7 @@ class ClientSockets:
                 sock, _ = self._listener.accept()
             except OSError:
                 return
-            if len(self._connections) >= MAX_CLIENTS:
+            if len(self._connections) >= MAX_OPERATORS:
                 yield from self._drop(self._least_needed(), "too many operators: you were silent")
             self._connections.append(Connection(sock, now_s))
 
@@ -286,23 +286,23 @@ class ClientSockets:
 
     # ---------------------------------------------------------------------------- tell
 
-    def tell(self, line: bytes, client: int, *, droppable: bool, last: bool) -> None:
-        """Queue an event's line for one client, or for all that have joined (`EVERYONE`).
+    def tell(self, line: bytes, operator: int, *, droppable: bool, last: bool) -> None:
+        """Queue an event's line for one operator, or for all that have joined (`EVERYONE`).
 
-        `last`: it is the client's good-bye; the connection closes once it is sent.
+        `last`: it is the operator's good-bye; the connection closes once it is sent.
         """
         for connection in self._connections:
-            mine = client in (EVERYONE, connection.number)
+            mine = operator in (EVERYONE, connection.number)
             if not mine or not connection.joined or connection.closing or connection.ended:
                 continue
             if connection.put(line, self._now_s(), droppable=droppable):
                 connection.give_up()
             connection.closing = last
 
-    def allow_more(self, client: int) -> None:
+    def allow_more(self, operator: int) -> None:
         """It watches topics: more may wait for it than for others."""
         for connection in self._connections:
-            if connection.number == client:
+            if connection.number == operator:
                 connection.max_queued_bytes = MAX_QUEUED_TOPIC_BYTES
 
     def close(self) -> None:
