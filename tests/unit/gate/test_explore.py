@@ -124,7 +124,7 @@ def test_what_the_walk_leaves_out_breaks_no_invariant_either(name: str) -> None:
     others too, and whatever new they reach is walked to its end.
 
     It ought to be nothing new: `situation.py` still takes some memories for one that differ
-    (CHANGELOG.md, known gaps).  16,000 others led to 10,041 more than PX4's 149,893, and to 5,970
+    (docs/decisions.md).  16,000 others led to 10,041 more than PX4's 149,893, and to 5,970
     more than ArduPilot's 93,486.
     """
     assert explored(name).fault is None
