@@ -294,6 +294,7 @@ def follow(left_m: float, per_s: float, a_m_s2: float) -> float:
     return math.sqrt(2.0 * a_m_s2 * (left_m - near_m / 2.0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("autopilot", AUTOPILOTS)
 @given(
     goal=st.builds(
