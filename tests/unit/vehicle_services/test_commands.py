@@ -271,3 +271,12 @@ def test_home_is_told_when_asked() -> None:
     heard = Bench().send(long(Cmd.GET_HOME_POSITION))
     home = of(heard, m.HomePosition)[-1]
     assert (home.latitude, home.longitude, home.altitude) == (473977420, 85455940, 488000)
+
+
+@pytest.mark.parametrize("system", [1, 255, 250])
+def test_with_sysid_enforce_ardupilot_hears_its_own_station_and_its_own_system(system: int) -> None:
+    """SYSID_MYGCS is 255, the vehicle's system 1: a companion computer has that one."""
+    bench = Bench("ardupilot")
+    bench.parameters.set("SYSID_ENFORCE", 1)
+    answers = acks(bench.send(long(Cmd.REQUEST_MESSAGE, 0.0), system=system))
+    assert bool(answers) is (system != 250)
