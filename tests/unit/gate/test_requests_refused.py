@@ -53,6 +53,9 @@ in GROUNDED; quits | disarm | =, sends DISARM, disarm accepted
 BATTERY_LOW=HOLD: armed; loaded 4; shows disarmed | {up, mission} | =, $ refused NOT_ARMED
 BATTERY_LOW=HOLD: armed; loaded 4; no landed; wait 4 | {up, mission} | =, $ refused IN_AIR
 BATTERY_LOW=HOLD: armed; loaded 4; raised BATTERY_LOW | {up, mission} | =, $ refused SEVERITY
+# Of several conditions the worst counts, whichever came first.
+BATTERY_LOW=HOLD: armed; loaded 4; {raised OTHER_STATION; raised BATTERY_LOW,
+    ... raised BATTERY_LOW; raised OTHER_STATION} | {up, mission} | =, $ refused SEVERITY
 BATTERY_LOW=HOLD: armed; raised BATTERY_LOW; over BATTERY_LOW
     | up | TAKING_OFF OURS, sends TAKE_OFF, up accepted
 # Arming needs nothing severe.
