@@ -32,7 +32,7 @@ from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import CommandEnded, HeartbeatSeen, Input, LandedSeen, Requested
 from gcs.gate.machine.gate import Gate
-from gcs.gate.machine.turn import REFUSED_LINE, REFUSED_STREAM_LINE
+from gcs.gate.machine.step_context import REFUSED_LINE, REFUSED_STREAM_LINE
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Refusal
 from gcs.gate.requests import Arm

@@ -23,7 +23,7 @@ from gcs.gate.machine.actions import Action
 from gcs.gate.machine.events import REQUESTS, Event
 from gcs.gate.machine.rows.row import STAY, Branch, Cell
 from gcs.gate.machine.sentences import ENDED, REFUSED
-from gcs.gate.machine.turn import End, Reply
+from gcs.gate.machine.step_context import End, Reply
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from tests.mutants.mutant import Kind

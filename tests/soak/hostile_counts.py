@@ -25,7 +25,7 @@ class CountingGate(Gate):
         return self.state is State.MOVING
 
     def _branch(self, event: Event) -> Branch:
-        self.met[self._turn.memory.state, event] += 1
+        self.met[self._step.memory.state, event] += 1
         return super()._branch(event)
 
 

@@ -260,7 +260,7 @@ class HostileRun:
 
     def clearance(self, pos_ned: Vec3) -> float:
         """The least of all faces, in metres; floors are the ground's business."""
-        verifier = self.gate._turn.memory.verifier
+        verifier = self.gate._step.memory.verifier
         if verifier is None:
             return math.inf
         en, up_m = (pos_ned[1], pos_ned[0]), -pos_ned[2]

@@ -11,7 +11,7 @@ from typing import Final
 
 import pytest
 
-from gcs.gate.airspace import judge
+from gcs.gate.airspace import fence_check
 from gcs.gate.airspace.clearance import Measure, Motion, swept_body_measure
 from gcs.gate.airspace.hulls import ground_track, hull_inside, hull_outside
 from gcs.gate.airspace.zones import Zone
@@ -126,7 +126,7 @@ def test_an_edge_that_is_a_little_off_is_found(monkeypatch: pytest.MonkeyPatch) 
 def test_a_region_of_which_only_some_corners_are_looked_at_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(judge, "ground_track", lambda points: ground_track(points[:1]))
+    monkeypatch.setattr(fence_check, "ground_track", lambda points: ground_track(points[:1]))
     with pytest.raises(AssertionError, match="seed 1: hull of"):
         zone_cases.run(1, 2_000)
 
@@ -137,6 +137,6 @@ def test_a_leg_that_is_looked_at_at_the_height_of_its_start_is_found(
     def level(zone: Zone, motion: Motion, beside_m: float) -> Measure | None:
         return swept_body_measure(zone, dataclasses.replace(motion, b_up_m=motion.a_up_m), beside_m)
 
-    monkeypatch.setattr(judge, "swept_body_measure", level)
+    monkeypatch.setattr(fence_check, "swept_body_measure", level)
     with pytest.raises(AssertionError, match="seed 1: leg of"):
         zone_cases.run(1, 2_000)

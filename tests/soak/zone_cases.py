@@ -17,7 +17,7 @@ from fractions import Fraction
 from msgspec.structs import replace
 
 from gcs.frames import Vec3, ned_from_enu
-from gcs.gate.airspace.judge import FenceJudge
+from gcs.gate.airspace.fence_check import FenceCheck
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import TOLERANCE_M, Circle, Point, Polygon, polygon_fault
 from gcs.gate.policy.parse import DEFAULT
@@ -52,7 +52,7 @@ def _case(dice: random.Random, corners: tuple[Point, ...], seed: str) -> tuple[s
         shapes.margin_of(dice, shapes.size_of(corners)),
         dice.choice((0.0, 0.3)),
     )
-    judge = FenceJudge(
+    judge = FenceCheck(
         (zone,),
         replace(
             DEFAULT,

@@ -9,7 +9,7 @@ from typing import Final
 from gcs.frames import Vec3
 from gcs.gate.airspace import limits
 from gcs.gate.airspace.clearance import NO_MARGINS, Margins
-from gcs.gate.airspace.judge import FenceJudge
+from gcs.gate.airspace.fence_check import FenceCheck
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
@@ -34,10 +34,10 @@ class Bounds:
     unplaced: Refusal | None = None
 
     @property
-    def judge(self) -> FenceJudge:
+    def judge(self) -> FenceCheck:
         """Judges by the zones; by none where the fence is off."""
         zones = self.zones if self.fence_on else ()
-        return FenceJudge(zones, self.policy, self.policy.braking_of(self.autopilot))
+        return FenceCheck(zones, self.policy, self.policy.braking_of(self.autopilot))
 
     @property
     def position_error(self) -> Margins:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.judge import FenceJudge
+from gcs.gate.airspace.fence_check import FenceCheck
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,7 @@ class Cleared:
 
 
 def clearance_numbers(
-    judge: FenceJudge, what: str, a_ned: Vec3, b_ned: Vec3
+    judge: FenceCheck, what: str, a_ned: Vec3, b_ned: Vec3
 ) -> tuple[tuple[str, float], ...]:
     """The distances of a-b to the nearest boundary, as evidence; infinite ones are left out."""
     near = judge.nearest(a_ned, b_ned)

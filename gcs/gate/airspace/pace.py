@@ -35,7 +35,7 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.bounds import Bounds
-from gcs.gate.airspace.judge import Slack
+from gcs.gate.airspace.fence_check import Slack
 from gcs.gate.airspace.limits import STANDING
 from gcs.gate.airspace.stopping import travel_m
 from gcs.gate.policy.policy import Pace

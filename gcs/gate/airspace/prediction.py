@@ -12,7 +12,7 @@ from gcs.gate.airspace import stopping
 from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.clearance import Measure
 from gcs.gate.airspace.explain import metres
-from gcs.gate.airspace.judge import FenceJudge, Slack
+from gcs.gate.airspace.fence_check import FenceCheck, Slack
 from gcs.gate.airspace.stopping import Path, StopBy
 from gcs.gate.policy.policy import Overshoot
 from gcs.gate.refusal import Code, Refusal
@@ -48,7 +48,7 @@ def bad_stop(
     """
     home_ned = bounds.home_ned
     policy, autopilot = bounds.policy, bounds.autopilot
-    found: list[tuple[float, StopBy, Vec3, Measure, FenceJudge]] = []
+    found: list[tuple[float, StopBy, Vec3, Measure, FenceCheck]] = []
     for by, (north_m, east_m, down_m) in stopping.ways_to_stop(
         pos_ned, v_ned, path, policy, autopilot, late_s
     ):
@@ -112,7 +112,7 @@ def cannot_stop_gained(
 
 
 def bad_overshoot(
-    judge: FenceJudge, subject: str, pos_ned: Vec3, goal_ned: Vec3, overshoot: Overshoot
+    judge: FenceCheck, subject: str, pos_ned: Vec3, goal_ned: Vec3, overshoot: Overshoot
 ) -> Refusal | None:
     """Refuses a goal past which the vehicle would fly so close to a boundary that it is braked."""
     past_ned = stopping.overshoot_point(pos_ned, goal_ned, overshoot)
@@ -128,7 +128,7 @@ def bad_overshoot(
     return Refusal(Code.TOO_CLOSE, sentence, numbers, measure.zone.name)
 
 
-def stopping_numbers(judge: FenceJudge, v_ned: Vec3) -> tuple[tuple[str, float], ...]:
+def stopping_numbers(judge: FenceCheck, v_ned: Vec3) -> tuple[tuple[str, float], ...]:
     """The stopping distances, horizontal and vertical, as evidence for a verdict."""
     margins = judge.margins
     return (

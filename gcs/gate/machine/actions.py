@@ -19,7 +19,7 @@ from gcs.gate.machine import commanding, holding, streaming, verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import Goal, Task
 from gcs.gate.machine.progress import within_arrival
-from gcs.gate.machine.turn import End, Turn
+from gcs.gate.machine.step_context import End, StepContext
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo, SwitchFence
 from gcs.gate.states import Control, FlightMode, LandedState, State
@@ -43,119 +43,119 @@ FLOWN: Final = frozenset(
 # ------------------------------------------------------------------------------------ goals
 
 
-def _verify_goal(turn: Turn) -> None:
+def _verify_goal(step: StepContext) -> None:
     """Ask the verifier for the pending goal; its answer is the next event.
 
     The setpoint that is being sent stays as it is until then.
     """
-    requested = turn.memory.pending
+    requested = step.memory.pending
     assert requested is not None
     assert isinstance(requested.request, GoTo)
-    refusal = verifying.goal(turn, requested.request)
-    turn.raised.append(Event.GOAL_CLEARED if refusal is None else Event.GOAL_REFUSED)
+    refusal = verifying.goal(step, requested.request)
+    step.raised.append(Event.GOAL_CLEARED if refusal is None else Event.GOAL_REFUSED)
 
 
-def _fly_goal(turn: Turn) -> None:
+def _fly_goal(step: StepContext) -> None:
     """Accept the pending go-to; the request that was under way is superseded."""
-    memory, requested = turn.memory, turn.memory.pending
+    memory, requested = step.memory, step.memory.pending
     assert requested is not None
     assert isinstance(requested.request, GoTo)
     memory.pending = None
-    turn.verdict(requested, Ruling.ACCEPTED, None)
-    turn.end(End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED))
+    step.verdict(requested, Ruling.ACCEPTED, None)
+    step.end(End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED))
     memory.task = Task(requested, Event.GOTO)
-    _fly_to(turn, Goal(requested.request.goal_ned, requested.request.yaw_rad, turn.evidence))
+    _fly_to(step, Goal(requested.request.goal_ned, requested.request.yaw_rad, step.evidence))
 
 
-def _fly_to_top(turn: Turn) -> None:
+def _fly_to_top(step: StepContext) -> None:
     """The climb ended within the vehicle's own tolerance: the rest is flown as a goal."""
-    _fly_to(turn, Goal(turn.memory.top_ned, None, turn.evidence))
+    _fly_to(step, Goal(step.memory.top_ned, None, step.evidence))
 
 
-def _fly_to(turn: Turn, goal: Goal) -> None:
-    memory = turn.memory
+def _fly_to(step: StepContext, goal: Goal) -> None:
+    memory = step.memory
     assert memory.pos_ned is not None
     memory.goal = goal
-    memory.within_since_ns = turn.now_ns if within_arrival(turn, goal.pos_ned) else None
-    turn.set_deadline(_flight_s(turn, memory.pos_ned, goal.pos_ned))
+    memory.within_since_ns = step.now_ns if within_arrival(step, goal.pos_ned) else None
+    step.set_deadline(_flight_s(step, memory.pos_ned, goal.pos_ned))
 
 
-def _flight_s(turn: Turn, pos_ned: Vec3, goal_ned: Vec3) -> float:
+def _flight_s(step: StepContext, pos_ned: Vec3, goal_ned: Vec3) -> float:
     """Seconds allowed for a goal: the slowest healthy flight there, times the policy's factor."""
-    speeds, policy = turn.policy.speeds, turn.policy
+    speeds, policy = step.policy.speeds, step.policy
     down_m = goal_ned[2] - pos_ned[2]
     level_s = math.hypot(goal_ned[0] - pos_ned[0], goal_ned[1] - pos_ned[1]) / speeds.cruise_m_s
     climb_s = abs(down_m) / (speeds.descend_m_s if down_m > 0.0 else speeds.climb_m_s)
     return max(policy.deadline_min_s, policy.deadline_factor * (level_s + climb_s))
 
 
-def _refuse_goal(turn: Turn) -> None:
-    assert turn.why is not None
-    turn.refuse_pending(turn.why)
+def _refuse_goal(step: StepContext) -> None:
+    assert step.why is not None
+    step.refuse_pending(step.why)
 
 
-def _hold_at_goal(turn: Turn) -> None:
+def _hold_at_goal(step: StepContext) -> None:
     """The goal is reached: it is the hold goal from now on."""
-    memory = turn.memory
+    memory = step.memory
     memory.hold, memory.goal = memory.goal, None
 
 
 # ---------------------------------------------------------------------------------- control
 
 
-def _take_control(turn: Turn) -> None:
+def _take_control(step: StepContext) -> None:
     """Send the verified present position as setpoint from now on, and command guided mode."""
-    assert turn.memory.pos_ned is not None
-    _take_control_at(turn, turn.memory.pos_ned)
+    assert step.memory.pos_ned is not None
+    _take_control_at(step, step.memory.pos_ned)
 
 
-def _take_control_on_way_back(turn: Turn) -> None:
+def _take_control_on_way_back(step: StepContext) -> None:
     """As `_take_control`, with a place inside as setpoint: the vehicle is outside, and flies there
     slowly."""
-    way = verifying.way_back(turn)
+    way = verifying.way_back(step)
     assert way is not None
-    _take_control_at(turn, way.to_ned)
-    turn.memory.hold = Goal(way.to_ned, None, way.evidence, way_back=True)
-    turn.say(Level.WARNING, f"It is outside, and flies back inside: to {place(way.to_ned)}")
+    _take_control_at(step, way.to_ned)
+    step.memory.hold = Goal(way.to_ned, None, way.evidence, way_back=True)
+    step.say(Level.WARNING, f"It is outside, and flies back inside: to {place(way.to_ned)}")
 
 
-def _take_control_at_top(turn: Turn) -> None:
+def _take_control_at_top(step: StepContext) -> None:
     """As `_take_control`, with the top of the climb as setpoint: the vehicle may end its climb
     below it.  An ArduPilot shows its hold mode there only where somebody else has put it into it:
     then a goal that has waited for the top is not flown."""
-    memory = turn.memory
+    memory = step.memory
     if memory.autopilot == "ardupilot" and memory.mode is FlightMode.HOLD:
-        turn.refuse_pending(Refusal(Code.MODE_CHANGED, "somebody else has stopped the climb"))
-    _take_control_at(turn, memory.top_ned)
+        step.refuse_pending(Refusal(Code.MODE_CHANGED, "somebody else has stopped the climb"))
+    _take_control_at(step, memory.top_ned)
 
 
-def _take_control_at(turn: Turn, hold_ned: Vec3) -> None:
+def _take_control_at(step: StepContext, hold_ned: Vec3) -> None:
     """ardupilot is asked for guided mode at once; px4 needs setpoints first, for the policy's
     time."""
-    memory, times = turn.memory, turn.policy.control
-    turn.cancel_commands()
-    memory.hold, memory.goal = Goal(hold_ned, None, turn.evidence), None
+    memory, times = step.memory, step.policy.control
+    step.cancel_commands()
+    memory.hold, memory.goal = Goal(hold_ned, None, step.evidence), None
     memory.control = Control.TAKING
     # The first setpoint leaves with the next tick, not with the request.
     stream_s = 0.0 if memory.autopilot == "ardupilot" else times.stream_s + TICK_S
-    memory.ask_control_ns = turn.after_ns(stream_s)
-    turn.set_deadline(stream_s + times.timeout_s)
+    memory.ask_control_ns = step.after_ns(stream_s)
+    step.set_deadline(stream_s + times.timeout_s)
 
 
-def _ask_guided(turn: Turn) -> None:
-    turn.memory.ask_control_ns = None
-    turn.command(CommandKind.GUIDED, "the present position is verified and streamed")
+def _ask_guided(step: StepContext) -> None:
+    step.memory.ask_control_ns = None
+    step.command(CommandKind.GUIDED, "the present position is verified and streamed")
 
 
-def _gain_control(turn: Turn) -> None:
-    turn.memory.control = Control.OURS
-    turn.memory.asked_mode = None
+def _gain_control(step: StepContext) -> None:
+    step.memory.control = Control.OURS
+    step.memory.asked_mode = None
 
 
-def _release_control(turn: Turn) -> None:
+def _release_control(step: StepContext) -> None:
     """Send no more setpoints, and forget every command that has no answer yet."""
-    memory = turn.memory
-    turn.cancel_commands()
+    memory = step.memory
+    step.cancel_commands()
     memory.control = Control.NONE
     memory.hold = memory.goal = None
     memory.ask_control_ns = None
@@ -164,24 +164,24 @@ def _release_control(turn: Turn) -> None:
 # ------------------------------------------------------------------------ fence and vehicle
 
 
-def _switch_fence(turn: Turn) -> None:
-    assert turn.requested is not None
-    assert isinstance(turn.requested.request, SwitchFence)
-    turn.memory.verifier = None
-    turn.out.append(SwitchedFence(turn.requested.request.on))
+def _switch_fence(step: StepContext) -> None:
+    assert step.requested is not None
+    assert isinstance(step.requested.request, SwitchFence)
+    step.memory.verifier = None
+    step.out.append(SwitchedFence(step.requested.request.on))
 
 
-def _forget_interrupted(turn: Turn) -> None:
+def _forget_interrupted(step: StepContext) -> None:
     """In STALE: release control, and go back to no state when a fresh position arrives."""
-    memory = turn.memory
-    _release_control(turn)
+    memory = step.memory
+    _release_control(step)
     memory.back_to = None
     memory.grace_until_ns = None
 
 
-def _forget_vehicle(turn: Turn) -> None:
+def _forget_vehicle(step: StepContext) -> None:
     """The vehicle is not heard any more: forget its reports, but not that it was heard."""
-    memory = turn.memory
+    memory = step.memory
     memory.lost_in_flight = memory.flown_state in FLOWN
     memory.failsafe = False
     memory.heard_ns = memory.pos_ns = None
@@ -195,42 +195,44 @@ def _forget_vehicle(turn: Turn) -> None:
     memory.grace_until_ns = None
 
 
-def _await_disarm(turn: Turn) -> None:
-    turn.set_deadline(turn.policy.control.disarm_wait_s)
+def _await_disarm(step: StepContext) -> None:
+    step.set_deadline(step.policy.control.disarm_wait_s)
 
 
-def _await_landing(turn: Turn) -> None:
+def _await_landing(step: StepContext) -> None:
     """It bounced: it has the time of a landing again."""
-    turn.set_deadline(turn.policy.land_timeout_s)
+    step.set_deadline(step.policy.land_timeout_s)
 
 
-def _await_position(turn: Turn) -> None:
+def _await_position(step: StepContext) -> None:
     """Arming waits for an estimator that starts."""
-    task = turn.memory.task
+    task = step.memory.task
     assert task is not None
-    turn.memory.task = replace(task, waiting=CommandKind.ARM)
-    turn.set_deadline(turn.policy.arm_timeout_s)
-    turn.say(Level.INFO, "no position yet (the estimator is starting): arming waits for one")
+    step.memory.task = replace(task, waiting=CommandKind.ARM)
+    step.set_deadline(step.policy.arm_timeout_s)
+    step.say(Level.INFO, "no position yet (the estimator is starting): arming waits for one")
 
 
-def _drop_deadline(turn: Turn) -> None:
-    turn.set_deadline(None)
+def _drop_deadline(step: StepContext) -> None:
+    step.set_deadline(None)
 
 
-def _note_lift_off(turn: Turn) -> None:
-    turn.memory.lifted = True
+def _note_lift_off(step: StepContext) -> None:
+    step.memory.lifted = True
 
 
-def _note_force_request(turn: Turn) -> None:
+def _note_force_request(step: StepContext) -> None:
     """Remember when a forced disarm was asked for first; only a second request has it."""
-    turn.memory.force_asked_ns = turn.now_ns
-    turn.say(Level.WARNING, "ask for the forced disarm again within 5 s to have it")
+    step.memory.force_asked_ns = step.now_ns
+    step.say(Level.WARNING, "ask for the forced disarm again within 5 s to have it")
 
 
 # ------------------------------------------------------------------------------ their names
 
 
-def _do(text: str, perform: Callable[[Turn], None]) -> tuple[str, Callable[[Turn], None]]:
+def _do(
+    text: str, perform: Callable[[StepContext], None]
+) -> tuple[str, Callable[[StepContext], None]]:
     """A member of `Action`; in a bare pair the types would not be checked."""
     return text, perform
 
@@ -239,9 +241,9 @@ class Action(StrEnum):
     """What a branch does: its text in the printed table, and the function that emits effects and
     changes the gate's memory."""
 
-    perform: Callable[[Turn], None]
+    perform: Callable[[StepContext], None]
 
-    def __new__(cls, text: str, perform: Callable[[Turn], None]) -> Self:
+    def __new__(cls, text: str, perform: Callable[[StepContext], None]) -> Self:
         member = str.__new__(cls, text)
         member._value_ = text
         member.perform = perform

@@ -10,7 +10,7 @@ from typing import Final
 from gcs.frames import as_on_the_wire
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine.holding import repeat_hold, verify_held_point
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.requests import StartMission, TakeOff
 from gcs.gate.states import Control, FlightMode
 
@@ -35,67 +35,67 @@ throttle stick is above zero).  So it leaves a GUIDED in which it was armed befo
 """
 
 
-def arm(turn: Turn) -> None:
+def arm(step: StepContext) -> None:
     """Command arming, after a mode that the autopilot arms in."""
-    turn.set_deadline(turn.policy.control.timeout_s)
-    _arm_or_its_mode(turn, "asked for on the ground")
+    step.set_deadline(step.policy.control.timeout_s)
+    _arm_or_its_mode(step, "asked for on the ground")
 
 
-def _arm_or_its_mode(turn: Turn, reason: str) -> None:
-    memory = turn.memory
+def _arm_or_its_mode(step: StepContext, reason: str) -> None:
+    memory = step.memory
     modes, first = ARM_FROM.get(memory.autopilot, (frozenset(FlightMode), CommandKind.HOLD))
     if memory.mode not in modes:
-        _command_after(turn, first, CommandKind.ARM)
+        _command_after(step, first, CommandKind.ARM)
     elif memory.guided_used and memory.autopilot == "ardupilot":
-        _command_after(turn, CommandKind.HOLD, CommandKind.ARM)
+        _command_after(step, CommandKind.HOLD, CommandKind.ARM)
     else:
-        turn.command(CommandKind.ARM, reason)
+        step.command(CommandKind.ARM, reason)
 
 
-def _command_after(turn: Turn, first: CommandKind, then: CommandKind) -> None:
+def _command_after(step: StepContext, first: CommandKind, then: CommandKind) -> None:
     """Command the mode `first`; `then` follows once the heartbeat shows it."""
-    task = turn.memory.task
+    task = step.memory.task
     assert task is not None
-    turn.memory.task = replace(task, waiting=then)
+    step.memory.task = replace(task, waiting=then)
     if first is CommandKind.HOLD:
-        repeat_hold(turn)
+        repeat_hold(step)
     else:
-        turn.command(first, f"the vehicle does not {then.value.replace('_', ' ')} in its mode")
+        step.command(first, f"the vehicle does not {then.value.replace('_', ' ')} in its mode")
 
 
-def send_waiting(turn: Turn) -> None:
+def send_waiting(step: StepContext) -> None:
     """Send the command that waited for its mode; arming may wait for one more."""
-    task = turn.memory.task
+    task = step.memory.task
     assert task is not None
     assert task.waiting is not None
-    turn.memory.task = replace(task, waiting=None)
+    step.memory.task = replace(task, waiting=None)
     if task.waiting is CommandKind.TAKE_OFF:
-        _climb(turn)
+        _climb(step)
         return
-    _arm_or_its_mode(turn, "the vehicle shows the mode for it")
-    if turn.memory.task is not None and turn.memory.task.waiting is None:
-        turn.set_deadline(turn.policy.control.timeout_s)  # its answer has as long as any
+    _arm_or_its_mode(step, "the vehicle shows the mode for it")
+    if step.memory.task is not None and step.memory.task.waiting is None:
+        step.set_deadline(step.policy.control.timeout_s)  # its answer has as long as any
 
 
-def set_guided(turn: Turn) -> None:
+def set_guided(step: StepContext) -> None:
     """Command guided mode to a vehicle that stands and moves nothing in it."""
-    turn.set_deadline(turn.policy.control.timeout_s)
-    turn.command(CommandKind.GUIDED, "asked for on the ground, where it stands still in it")
+    step.set_deadline(step.policy.control.timeout_s)
+    step.command(CommandKind.GUIDED, "asked for on the ground, where it stands still in it")
 
 
-def disarm(turn: Turn) -> None:
-    turn.set_deadline(turn.policy.control.timeout_s)
-    turn.command(CommandKind.DISARM, "on the ground")
+def disarm(step: StepContext) -> None:
+    step.set_deadline(step.policy.control.timeout_s)
+    step.command(CommandKind.DISARM, "on the ground")
 
 
-def force_disarm(turn: Turn) -> None:
-    turn.set_deadline(turn.policy.control.timeout_s)
-    turn.command(CommandKind.FORCE_DISARM, "allowed by the policy and asked for twice")
+def force_disarm(step: StepContext) -> None:
+    step.set_deadline(step.policy.control.timeout_s)
+    step.command(CommandKind.FORCE_DISARM, "allowed by the policy and asked for twice")
 
 
-def take_off(turn: Turn) -> None:
+def take_off(step: StepContext) -> None:
     """Note from where and to what height it climbs, and command the take-off."""
-    memory, task = turn.memory, turn.memory.task
+    memory, task = step.memory, step.memory.task
     assert task is not None
     assert isinstance(task.requested.request, TakeOff)
     assert memory.pos_ned is not None
@@ -105,71 +105,71 @@ def take_off(turn: Turn) -> None:
     north_m, east_m, down_m = memory.pos_ned
     top_down_m = as_on_the_wire(down_m - task.requested.request.up_m)
     memory.top_ned = (north_m, east_m, top_down_m)
-    turn.set_deadline(turn.policy.takeoff.timeout_s)
+    step.set_deadline(step.policy.takeoff.timeout_s)
     if memory.autopilot == "ardupilot" and memory.mode is not FlightMode.GUIDED:
-        _command_after(turn, CommandKind.GUIDED, CommandKind.TAKE_OFF)
+        _command_after(step, CommandKind.GUIDED, CommandKind.TAKE_OFF)
     else:
-        _climb(turn)
+        _climb(step)
 
 
-def _climb(turn: Turn) -> None:
-    memory, task = turn.memory, turn.memory.task
+def _climb(step: StepContext) -> None:
+    memory, task = step.memory, step.memory.task
     assert task is not None
     assert isinstance(task.requested.request, TakeOff)
-    turn.command(CommandKind.TAKE_OFF, "the climb is verified", up_m=task.requested.request.up_m)
-    memory.takeoff_until_ns = turn.after_ns(2 * turn.policy.control.timeout_s)
+    step.command(CommandKind.TAKE_OFF, "the climb is verified", up_m=task.requested.request.up_m)
+    memory.takeoff_until_ns = step.after_ns(2 * step.policy.control.timeout_s)
     if memory.autopilot != "ardupilot":
-        turn.await_mode(FlightMode.TAKEOFF)
+        step.await_mode(FlightMode.TAKEOFF)
 
 
 def _fly_by_itself(
-    turn: Turn, kind: CommandKind, reason: str, seconds: float | None, seq: int | None = None
+    step: StepContext, kind: CommandKind, reason: str, seconds: float | None, seq: int | None = None
 ) -> None:
     """Command a mode in which the vehicle flies by itself.  One that follows our setpoints is held
     where it is until it shows that mode.
 
     `seconds` is the deadline of the request; None: it has none.  `seq` is where a mission begins.
     """
-    memory = turn.memory
-    turn.cancel_commands()
+    memory = step.memory
+    step.cancel_commands()
     memory.goal = memory.hold = None
     if memory.control is Control.OURS and memory.mode is FlightMode.GUIDED and memory.airborne:
-        verify_held_point(turn)
+        verify_held_point(step)
     memory.control = Control.OURS
     memory.ask_control_ns = None
-    turn.set_deadline(seconds)
-    turn.command(kind, reason, seq=seq)
+    step.set_deadline(seconds)
+    step.command(kind, reason, seq=seq)
 
 
-def land(turn: Turn) -> None:
+def land(step: StepContext) -> None:
     _fly_by_itself(
-        turn, CommandKind.LAND, "landing in place is never refused", turn.policy.land_timeout_s
+        step, CommandKind.LAND, "landing in place is never refused", step.policy.land_timeout_s
     )
 
 
-def land_mode_only(turn: Turn) -> None:
+def land_mode_only(step: StepContext) -> None:
     """Command landing to a vehicle that is not heard; control stays as it is."""
-    turn.set_deadline(turn.policy.land_timeout_s)
-    turn.command(CommandKind.LAND, "landing in place is never refused")
+    step.set_deadline(step.policy.land_timeout_s)
+    step.command(CommandKind.LAND, "landing in place is never refused")
 
 
-def return_home(turn: Turn) -> None:
+def return_home(step: StepContext) -> None:
     """Command the return; a blocked one that the policy forwards is announced."""
-    if turn.why is not None:
-        turn.say(Level.WARNING, f"{turn.why.sentence}; the policy forwards it")
-    _fly_by_itself(turn, CommandKind.RETURN, "the return path is judged", None)
+    if step.why is not None:
+        step.say(Level.WARNING, f"{step.why.sentence}; the policy forwards it")
+    _fly_by_itself(step, CommandKind.RETURN, "the return path is judged", None)
 
 
-def start_mission(turn: Turn) -> None:
-    memory = turn.memory
+def start_mission(step: StepContext) -> None:
+    memory = step.memory
     memory.lifted = memory.airborne
     memory.mission_over = False
-    request = turn.requested.request if turn.requested is not None else None
+    request = step.requested.request if step.requested is not None else None
     seq = request.seq if isinstance(request, StartMission) else None
     reason = "the mission on board is verified"
-    _fly_by_itself(turn, CommandKind.START_MISSION, reason, None, seq)
+    _fly_by_itself(step, CommandKind.START_MISSION, reason, None, seq)
 
 
-def photo(turn: Turn) -> None:
-    turn.set_deadline(turn.policy.photo_timeout_s)
-    turn.command(CommandKind.PHOTO, "asked for while hovering")
+def photo(step: StepContext) -> None:
+    step.set_deadline(step.policy.photo_timeout_s)
+    step.command(CommandKind.PHOTO, "asked for while hovering")

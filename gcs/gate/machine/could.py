@@ -13,7 +13,7 @@ from gcs.gate.machine.checks import Check
 from gcs.gate.machine.memory import Memory
 from gcs.gate.machine.rows.requests_to_fly import arm
 from gcs.gate.machine.sentences import REFUSED, no_fresh_position
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.machine.verifying import home_or_fence_unknown
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
@@ -27,15 +27,15 @@ def why_not_arm(policy: Policy, memory: Memory, now_ns: int) -> Refusal | None:
 
     Asks the checks of the table's own row, and changes nothing.
     """
-    turn = Turn(policy, memory, now_ns)
-    if memory.state is State.STALE or turn.stale:
+    step = StepContext(policy, memory, now_ns)
+    if memory.state is State.STALE or step.stale:
         return Refusal(Code.STALE, "the vehicle's position is too old")
     if memory.state is not State.GROUNDED:
         return Refusal(
             Code.ALREADY_FLYING, f"the vehicle is not on the ground: {memory.state.name}"
         )
     for check in arm.needs:
-        refusal = check.refusal(turn)
+        refusal = check.refusal(step)
         if refusal is not None:
             return refusal
     return None
@@ -48,16 +48,16 @@ def why_not_resume(policy: Policy, memory: Memory, now_ns: int) -> Refusal | Non
     """
     if not memory.airborne:
         return Refusal(Code.NOT_FLYING, REFUSED[Code.NOT_FLYING])
-    turn = Turn(policy, memory, now_ns)
+    step = StepContext(policy, memory, now_ns)
     if memory.verifier is None:
         return home_or_fence_unknown()
-    if turn.stale or memory.pos_ned is None:
+    if step.stale or memory.pos_ned is None:
         return no_fresh_position(memory)
     judged = memory.verifier.hold_point(memory.pos_ned, AT_REST, (), floor_applies=True)
     if not isinstance(judged, Refusal):
-        return Check.SEVERITY.refusal(turn)
+        return Check.SEVERITY.refusal(step)
     if isinstance(memory.verifier.way_back(memory.pos_ned, AT_REST), WayBack):
-        return Check.SEVERITY_BUT_FENCE.refusal(turn)
+        return Check.SEVERITY_BUT_FENCE.refusal(step)
     return judged
 
 

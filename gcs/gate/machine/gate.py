@@ -31,8 +31,15 @@ from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.observe import events_from
 from gcs.gate.machine.pacing import towards, way_is_known
 from gcs.gate.machine.rows.row import BACK, STAY, Branch, Next
+from gcs.gate.machine.step_context import (
+    CommandDraft,
+    Draft,
+    Reply,
+    SampleDraft,
+    SetpointDraft,
+    StepContext,
+)
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
-from gcs.gate.machine.turn import CommandDraft, Draft, Reply, SampleDraft, SetpointDraft, Turn
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, FlightMode, LandedState, State
@@ -74,13 +81,13 @@ class Gate:
 
     def __init__(self, policy: Policy, autopilot: str, now_ns: int, table: Table = TABLE) -> None:
         self._table = table
-        self._turn = Turn(policy, Memory(autopilot), now_ns)
+        self._step = StepContext(policy, Memory(autopilot), now_ns)
 
     @classmethod
     def resumed(cls, policy: Policy, memory: Memory, now_ns: int, table: Table = TABLE) -> Gate:
         """A gate that goes on from `memory`, which belongs to it from now on."""
         gate = cls(policy, memory.autopilot, now_ns, table)
-        gate._turn.memory = memory
+        gate._step.memory = memory
         return gate
 
     # --------------------------------------------------------------------------- reading
@@ -88,38 +95,38 @@ class Gate:
     @property
     def memory(self) -> Memory:
         """A copy of what the gate knows and has accepted."""
-        return self._turn.memory.copy()
+        return self._step.memory.copy()
 
     @property
     def state(self) -> State:
-        return self._turn.memory.state
+        return self._step.memory.state
 
     @property
     def severity(self) -> Severity:
-        return self._turn.severity
+        return self._step.severity
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
         """The active conditions."""
-        return tuple(condition for condition, _ in self._turn.memory.conditions)
+        return tuple(condition for condition, _ in self._step.memory.conditions)
 
     @property
     def reasons(self) -> tuple[tuple[Condition, str], ...]:
         """The active conditions, and what each was reported with."""
-        return tuple(self._turn.memory.conditions)
+        return tuple(self._step.memory.conditions)
 
     def severity_of(self, condition: Condition) -> Severity:
         """What the policy makes of a condition."""
-        return self._turn.policy.severities[condition]
+        return self._step.policy.severities[condition]
 
     @property
     def control(self) -> Control:
-        return self._turn.memory.control
+        return self._step.memory.control
 
     @property
     def active_goal_ned(self) -> Vec3 | None:
         """The goal that the vehicle flies to, else the one that it hovers at; None without one."""
-        memory = self._turn.memory
+        memory = self._step.memory
         if memory.flown_state is State.STREAMING and memory.flown is not None:
             return memory.flown.sample.pos_ned
         by_itself = STREAMS[memory.state] is Streams.HOLD_GOAL_UNTIL_MODE
@@ -128,22 +135,22 @@ class Gate:
 
     @property
     def hold_goal_ned(self) -> Vec3 | None:
-        hold = self._turn.memory.hold
+        hold = self._step.memory.hold
         return None if hold is None else hold.pos_ned
 
     @property
     def pos_ned(self) -> Vec3 | None:
-        return self._turn.memory.pos_ned
+        return self._step.memory.pos_ned
 
     def position_age_s(self, now_ns: int) -> float | None:
-        age_ns = self._turn.memory.position_age_ns(now_ns)
+        age_ns = self._step.memory.position_age_ns(now_ns)
         return None if age_ns is None else age_ns / SECOND_NS
 
     @property
     def settled(self) -> bool:
         """May the station leave?  The vehicle is seen holding, returning or landing, or is on the
         ground with no command unanswered, or is not under our control."""
-        memory = self._turn.memory
+        memory = self._step.memory
         if memory.state in (State.GROUNDED, State.NO_VEHICLE):
             awaited = memory.hold_again_ns is not None and memory.state is State.NO_VEHICLE
             return not (memory.outstanding or awaited)
@@ -158,7 +165,7 @@ class Gate:
     @property
     def deadline_ns(self) -> int | None:
         """When the next thing is due; it happens at the first tick after it.  None: nothing is."""
-        memory, policy = self._turn.memory, self._turn.policy
+        memory, policy = self._step.memory, self._step.policy
         times = [
             memory.ask_control_ns,
             memory.hold_again_ns,
@@ -177,32 +184,32 @@ class Gate:
 
         Raises ImpossibleError where the table has a bug; every input is legal at any time.
         """
-        turn = self._turn = Turn(self._turn.policy, self._turn.memory, now_ns)
+        step = self._step = StepContext(self._step.policy, self._step.memory, now_ns)
         if isinstance(given, Requested | StreamSeen | OperatorLost | Tick):
             self._check_ages()
         if isinstance(given, Requested):
-            turn.requested = given
+            step.requested = given
         elif isinstance(given, StreamSeen):
-            turn.streamed = given
-        severity = turn.severity if isinstance(given, ConditionChanged) else None
-        for event, why, breach in events_from(turn, given):
-            turn.why, turn.breach = why, breach
+            step.streamed = given
+        severity = step.severity if isinstance(given, ConditionChanged) else None
+        for event, why, breach in events_from(step, given):
+            step.why, step.breach = why, breach
             self._fire(event)
         if severity is not None:
             self._demand(severity)
         if isinstance(given, Tick):
             self._tick()
-        return [self._permitted(draft) for draft in turn.out]
+        return [self._permitted(draft) for draft in step.out]
 
     def _check_ages(self) -> None:
         """Handle what has become too old, before anything is decided on it."""
-        turn, memory, now_ns = self._turn, self._turn.memory, self._turn.now_ns
-        if _due(_plus(memory.landed_ns, turn.policy.heartbeat_age_s), now_ns):
+        step, memory, now_ns = self._step, self._step.memory, self._step.now_ns
+        if _due(_plus(memory.landed_ns, step.policy.heartbeat_age_s), now_ns):
             memory.landed, memory.landed_ns = LandedState.UNDEFINED, None
         if memory.state is not State.NO_VEHICLE:
-            if _due(_plus(memory.heard_ns, turn.policy.heartbeat_age_s), now_ns):
+            if _due(_plus(memory.heard_ns, step.policy.heartbeat_age_s), now_ns):
                 self._fire(Event.VEHICLE_LOST)
-            elif turn.stale:
+            elif step.stale:
                 self._fire(Event.POSITION_AGED)
         if memory.task is not None and _due(memory.task.deadline_ns, now_ns):
             self._fire(Event.DEADLINE)
@@ -211,17 +218,17 @@ class Gate:
             self._fire(Event.MODE_OVERDUE)
 
     def _tick(self) -> None:
-        turn, memory = self._turn, self._turn.memory
-        if _due(memory.hold_again_ns, turn.now_ns):
+        step, memory = self._step, self._step.memory
+        if _due(memory.hold_again_ns, step.now_ns):
             self._fire(Event.HOLD_DUE)
-        if _due(memory.ask_control_ns, turn.now_ns):
+        if _due(memory.ask_control_ns, step.now_ns):
             self._fire(Event.CONTROL_DUE)
         self._fire(Event.TICK)
         self._stream()
 
     def _demand(self, before: Severity) -> None:
         """Handle a change of severity, which was `before` when the input came."""
-        after = self._turn.severity
+        after = self._step.severity
         if after > before and after in MUST:
             self._fire(MUST[after])
         elif after < before:
@@ -230,30 +237,30 @@ class Gate:
     def _fire(self, event: Event) -> None:
         """Take a branch of the cell for `event` in the present state, then handle the events that
         its actions raised."""
-        turn = self._turn
+        step = self._step
         branch = self._branch(event)
         for check in branch.needs:
-            refusal = check.refusal(turn)
+            refusal = check.refusal(step)
             if refusal is not None:
-                assert turn.requested is not None
-                turn.verdict(turn.requested, Ruling.REFUSED, refusal)
+                assert step.requested is not None
+                step.verdict(step.requested, Ruling.REFUSED, refusal)
                 return
         if branch.refuse is not None:
-            turn.refuse(branch.refuse)
+            step.refuse(branch.refuse)
         if branch.reply is not Reply.NONE:
-            turn.reply(branch.reply, event, branch.ends)
+            step.reply(branch.reply, event, branch.ends)
         elif branch.ends is not None:
-            turn.end(branch.ends)
+            step.end(branch.ends)
         for action in branch.do:
-            action.perform(turn)
+            action.perform(step)
         self._enter(branch.to, event)
-        while turn.raised:
-            self._fire(turn.raised.pop(0))
+        while step.raised:
+            self._fire(step.raised.pop(0))
 
     def _branch(self, event: Event) -> Branch:
-        state = self._turn.memory.state
+        state = self._step.memory.state
         for branch in self._table[state, event]:
-            if all(guard.holds(self._turn) for guard in branch.when):
+            if all(guard.holds(self._step) for guard in branch.when):
                 return branch
         raise ImpossibleError(f"{event} in {state.name}")
 
@@ -263,7 +270,7 @@ class Gate:
         In STALE what a severity demands may be left undone, so it is demanded again when a fresh
         position leads back to the interrupted state.
         """
-        turn, memory = self._turn, self._turn.memory
+        step, memory = self._step, self._step.memory
         if to is STAY:
             return
         before, back_to = memory.state, memory.back_to
@@ -278,19 +285,19 @@ class Gate:
         if before is State.STALE:
             memory.back_to = memory.grace_until_ns = None
         if memory.state not in GOALS_WAIT_IN:
-            turn.refuse_pending(Refusal(Code.NOT_FLYING, "the vehicle does not hover any more"))
-        turn.out.append(
-            Transition(before, memory.state, event.value, memory.control, turn.severity)
+            step.refuse_pending(Refusal(Code.NOT_FLYING, "the vehicle does not hover any more"))
+        step.out.append(
+            Transition(before, memory.state, event.value, memory.control, step.severity)
         )
-        turn.say(Level.INFO, f"Current State: {memory.state.name}")
-        if to is BACK and turn.severity in MUST:
-            turn.raised.append(MUST[turn.severity])
+        step.say(Level.INFO, f"Current State: {memory.state.name}")
+        if to is BACK and step.severity in MUST:
+            step.raised.append(MUST[step.severity])
 
     # --------------------------------------------------------------------------- permits
 
     def _stream(self) -> None:
         """Send the setpoint of this tick, in the states that send one and with control."""
-        turn, memory = self._turn, self._turn.memory
+        step, memory = self._step, self._step.memory
         if memory.control is Control.NONE:
             return
         streams = STREAMS[memory.state]
@@ -300,22 +307,22 @@ class Gate:
         goal = {
             Streams.HOLD_GOAL: memory.hold,
             Streams.ACTIVE_GOAL: memory.goal,
-            Streams.HOLD_GOAL_UNTIL_MODE: memory.hold if _awaits_mode_in_guided(turn) else None,
+            Streams.HOLD_GOAL_UNTIL_MODE: memory.hold if _awaits_mode_in_guided(step) else None,
         }.get(streams)
         if streams is Streams.SAMPLE:
             goal = memory.hold
             if memory.state is State.STREAMING and memory.flown is not None:
-                turn.out.append(SampleDraft(memory.flown.sample, memory.state.name))
+                step.out.append(SampleDraft(memory.flown.sample, memory.state.name))
                 return
-        if goal is not None and way_is_known(turn, goal.pos_ned):
-            turn.out.append(SetpointDraft(goal, memory.state.name))
+        if goal is not None and way_is_known(step, goal.pos_ned):
+            step.out.append(SetpointDraft(goal, memory.state.name))
 
     def _permitted(self, draft: Draft) -> Effect:
         """Make the effect of a draft: the permit is issued here, where one is needed."""
-        now_ns = self._turn.now_ns
+        now_ns = self._step.now_ns
         if isinstance(draft, SetpointDraft):
             goal = draft.goal
-            target_ned = towards(self._turn, goal.pos_ned)
+            target_ned = towards(self._step, goal.pos_ned)
             assert all(map(math.isfinite, target_ned))
             return SendSetpoint(permit.issue(target_ned, goal.yaw_rad, now_ns, draft.reason))
         if isinstance(draft, SampleDraft):
@@ -323,7 +330,7 @@ class Gate:
             to_ned = asked.pos_ned
             return SendSetpoint(
                 permit.issue(
-                    None if to_ned is None else towards(self._turn, to_ned, asked.v_ned),
+                    None if to_ned is None else towards(self._step, to_ned, asked.v_ned),
                     asked.yaw_rad,
                     now_ns,
                     draft.reason,
@@ -347,12 +354,12 @@ class Gate:
         return draft
 
 
-def _awaits_mode_in_guided(turn: Turn) -> bool:
+def _awaits_mode_in_guided(step: StepContext) -> bool:
     """The vehicle still follows setpoints, on a position that can be judged, and is to leave that
     mode."""
-    memory = turn.memory
+    memory = step.memory
     awaited = memory.asked_mode is not None and memory.mode is FlightMode.GUIDED
-    return awaited and not turn.stale
+    return awaited and not step.stale
 
 
 def _plus(time_ns: int | None, seconds: float) -> int | None:

@@ -1,7 +1,7 @@
 """The guards: conditions of the table's branches, and when each holds.
 
 A guard does not change the gate's memory.  Those that ask the verifier, and
-`CLIMB_ENDED_ELSEWHERE`, leave the reason of a refusal in the turn, for its sentence.
+`CLIMB_ENDED_ELSEWHERE`, leave the reason of a refusal in the step, for its sentence.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from gcs.gate.effects import CommandKind
 from gcs.gate.machine import progress, streaming, verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, Memory
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.requests import SetMode
 from gcs.gate.states import Control, FlightMode, State
 
@@ -36,59 +36,59 @@ MODES_OF_STATE: Final[Mapping[State, frozenset[FlightMode]]] = MappingProxyType(
 """The modes that the vehicle flies in while we command a state; other states command none."""
 
 
-def _task_in(*kinds: Event) -> Callable[[Turn], bool]:
-    return lambda turn: turn.memory.task is not None and turn.memory.task.kind in kinds
+def _task_in(*kinds: Event) -> Callable[[StepContext], bool]:
+    return lambda step: step.memory.task is not None and step.memory.task.kind in kinds
 
 
-def _mode(mode: FlightMode) -> Callable[[Turn], bool]:
-    return lambda turn: turn.memory.mode is mode
+def _mode(mode: FlightMode) -> Callable[[StepContext], bool]:
+    return lambda step: step.memory.mode is mode
 
 
-def _disarmed_and_idle(turn: Turn) -> bool:
-    memory = turn.memory
+def _disarmed_and_idle(step: StepContext) -> bool:
+    memory = step.memory
     return not memory.armed and memory.task is None and not memory.outstanding
 
 
-def _take_off_may_come_late(turn: Turn) -> bool:
-    return turn.now_ns < turn.memory.takeoff_until_ns
+def _take_off_may_come_late(step: StepContext) -> bool:
+    return step.now_ns < step.memory.takeoff_until_ns
 
 
-def _surely_on_ground(turn: Turn) -> bool:
-    memory = turn.memory
-    may_climb = memory.back_to is not None or (memory.armed and _take_off_may_come_late(turn))
+def _surely_on_ground(step: StepContext) -> bool:
+    memory = step.memory
+    may_climb = memory.back_to is not None or (memory.armed and _take_off_may_come_late(step))
     return memory.on_ground and not may_climb
 
 
-def _task_ends_held(turn: Turn) -> bool:
+def _task_ends_held(step: StepContext) -> bool:
     """Not where a disarm was commanded as well: then the request ends with the disarm."""
-    disarms = any(kind is CommandKind.DISARM for _, kind in turn.memory.outstanding)
-    return not disarms and _task_in(Event.HOLD, Event.ABORT)(turn)
+    disarms = any(kind is CommandKind.DISARM for _, kind in step.memory.outstanding)
+    return not disarms and _task_in(Event.HOLD, Event.ABORT)(step)
 
 
-def _retarget_allowed(turn: Turn) -> bool:
-    task = turn.memory.task
+def _retarget_allowed(step: StepContext) -> bool:
+    task = step.memory.task
     return (
-        turn.policy.retarget == "replace"
+        step.policy.retarget == "replace"
         and task is not None
-        and task.requested.source == turn.source
+        and task.requested.source == step.source
     )
 
 
-def _force_disarm_unconfirmed(turn: Turn) -> bool:
-    asked_ns = turn.memory.force_asked_ns
-    within_ns = turn.policy.control.force_repeat_s * SECOND_NS
-    return asked_ns is None or turn.now_ns - asked_ns > within_ns
+def _force_disarm_unconfirmed(step: StepContext) -> bool:
+    asked_ns = step.memory.force_asked_ns
+    within_ns = step.policy.control.force_repeat_s * SECOND_NS
+    return asked_ns is None or step.now_ns - asked_ns > within_ns
 
 
-def _stands_in_guided(turn: Turn) -> bool:
+def _stands_in_guided(step: StepContext) -> bool:
     """ArduPilot's GUIDED moves nothing on the ground; px4's OFFBOARD flies what is sent."""
-    asked = turn.requested
+    asked = step.requested
     by_name = asked is not None and isinstance(asked.request, SetMode)
-    return by_name and turn.memory.autopilot == "ardupilot" and turn.memory.on_ground
+    return by_name and step.memory.autopilot == "ardupilot" and step.memory.on_ground
 
 
-def _mode_fits_state(turn: Turn) -> bool:
-    memory = turn.memory
+def _mode_fits_state(step: StepContext) -> bool:
+    memory = step.memory
     if memory.mode is None:
         return False
     if memory.flown_state is State.HOVERING and memory.control is Control.TAKING:
@@ -96,37 +96,41 @@ def _mode_fits_state(turn: Turn) -> bool:
     return memory.mode in MODES_OF_STATE.get(memory.flown_state, frozenset())
 
 
-def _mission_goes_on(turn: Turn) -> bool:
-    memory = turn.memory
-    return memory.mode is FlightMode.MISSION and _task_in(Event.MISSION)(turn)
+def _mission_goes_on(step: StepContext) -> bool:
+    memory = step.memory
+    return memory.mode is FlightMode.MISSION and _task_in(Event.MISSION)(step)
 
 
-def _mode_awaited(turn: Turn) -> bool:
-    memory = turn.memory
-    return memory.asked_mode is not None and turn.now_ns < memory.asked_until_ns
+def _mode_awaited(step: StepContext) -> bool:
+    memory = step.memory
+    return memory.asked_mode is not None and step.now_ns < memory.asked_until_ns
 
 
-def _grace_over(turn: Turn) -> bool:
-    until_ns = turn.memory.grace_until_ns
-    return until_ns is not None and turn.now_ns >= until_ns
+def _grace_over(step: StepContext) -> bool:
+    until_ns = step.memory.grace_until_ns
+    return until_ns is not None and step.now_ns >= until_ns
 
 
-def _when(text: str, holds: Callable[[Turn], bool]) -> tuple[str, Callable[[Turn], bool]]:
+def _when(
+    text: str, holds: Callable[[StepContext], bool]
+) -> tuple[str, Callable[[StepContext], bool]]:
     """A member of `Guard`; in a bare pair the types would not be checked."""
     return text, holds
 
 
-def _remembered(text: str, holds: Callable[[Memory], bool]) -> tuple[str, Callable[[Turn], bool]]:
+def _remembered(
+    text: str, holds: Callable[[Memory], bool]
+) -> tuple[str, Callable[[StepContext], bool]]:
     """A guard that needs neither the time nor the policy."""
-    return text, lambda turn: holds(turn.memory)
+    return text, lambda step: holds(step.memory)
 
 
 class Guard(StrEnum):
     """A condition of a branch: its text in the printed table (`gcs fsa`), and when it holds."""
 
-    holds: Callable[[Turn], bool]
+    holds: Callable[[StepContext], bool]
 
-    def __new__(cls, text: str, holds: Callable[[Turn], bool]) -> Self:
+    def __new__(cls, text: str, holds: Callable[[StepContext], bool]) -> Self:
         member = str.__new__(cls, text)
         member._value_ = text
         member.holds = holds
@@ -152,7 +156,7 @@ class Guard(StrEnum):
     TASK_IS_CONTROL = _when("the request is for guided mode", _task_in(Event.CONTROL))
     TASK_WAITS = _when(
         "the request's command waits for a mode or a position",
-        lambda turn: turn.memory.task is not None and turn.memory.task.waiting is not None,
+        lambda step: step.memory.task is not None and step.memory.task.waiting is not None,
     )
     TASK_ENDS_HELD = _when("the request is to hold or abort", _task_ends_held)
     TASK_ENDS_LANDED = _when(
@@ -179,32 +183,32 @@ class Guard(StrEnum):
     )
     OPERATOR_LOST = _remembered("the operator is lost", lambda m: m.operator_lost)
     POSITION_CLEARS = _when(
-        "the present position clears", lambda turn: verifying.position(turn) is None
+        "the present position clears", lambda step: verifying.position(step) is None
     )
     WAY_BACK_CLEARS = _when(
         "it is outside, and the way back inside clears",
-        lambda turn: verifying.way_back(turn) is not None,
+        lambda step: verifying.way_back(step) is not None,
     )
-    POSITION_TOO_OLD = _when("the position is too old", lambda turn: turn.stale)
-    TOP_CLEARS = _when("the way to the top clears", lambda turn: verifying.top(turn) is None)
+    POSITION_TOO_OLD = _when("the position is too old", lambda step: step.stale)
+    TOP_CLEARS = _when("the way to the top clears", lambda step: verifying.top(step) is None)
     RETURN_PATH_CLEARS = _when(
-        "the return path clears", lambda turn: verifying.return_path(turn) is None
+        "the return path clears", lambda step: verifying.return_path(step) is None
     )
     BLOCKED_RETURN_FORWARDED = _when(
-        "policy forwards blocked returns", lambda turn: turn.policy.rtl_blocked == "forward"
+        "policy forwards blocked returns", lambda step: step.policy.rtl_blocked == "forward"
     )
     BLOCKED_RETURN_LANDS = _when(
-        "policy lands on blocked returns", lambda turn: turn.policy.rtl_blocked == "land"
+        "policy lands on blocked returns", lambda step: step.policy.rtl_blocked == "land"
     )
     RETARGET_ALLOWED = _when("policy lets the goal's owner replace it", _retarget_allowed)
     FENCE_SWITCHABLE = _when(
-        "policy lets the fence be switched", lambda turn: turn.policy.fence_switchable
+        "policy lets the fence be switched", lambda step: step.policy.fence_switchable
     )
     FORCE_DISARM_FORBIDDEN = _when(
-        "policy forbids disarming in the air", lambda turn: not turn.policy.allow_force_disarm
+        "policy forbids disarming in the air", lambda step: not step.policy.allow_force_disarm
     )
     FORCE_DISARM_UNCONFIRMED = _when("it was asked for only once", _force_disarm_unconfirmed)
-    SEVERITY_PERMITS = _when("severity permits motion", lambda turn: turn.severity < Severity.HOLD)
+    SEVERITY_PERMITS = _when("severity permits motion", lambda step: step.severity < Severity.HOLD)
     HOLD_AWAITED = _remembered(
         "hold is commanded and not shown yet", lambda m: m.hold_again_ns is not None
     )
@@ -220,7 +224,7 @@ class Guard(StrEnum):
     MODE_RETURN = _when("the mode is return", _mode(FlightMode.RETURN))
     MODE_LAND = _when("the mode is land", _mode(FlightMode.LAND))
     GUIDED_MAY_COME_LATE = _when(
-        "our own guided command comes late", lambda turn: turn.now_ns < turn.memory.guided_until_ns
+        "our own guided command comes late", lambda step: step.now_ns < step.memory.guided_until_ns
     )
     MISSION_AT_LAST_ITEM = _remembered(
         "the mission reached its last item", lambda m: m.mission_over
@@ -235,7 +239,7 @@ class Guard(StrEnum):
     INTERRUPTED_STREAM = _when(
         "it interrupted the stream of this client", streaming.interrupted_stream
     )
-    SAMPLE_CLEARS = _when("the sample clears", lambda turn: verifying.given_sample(turn) is None)
+    SAMPLE_CLEARS = _when("the sample clears", lambda step: verifying.given_sample(step) is None)
     SAMPLES_GOOD_AGAIN = _when(
         "the samples are good, and have been long enough", streaming.samples_good_again
     )

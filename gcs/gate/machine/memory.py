@@ -135,7 +135,8 @@ class Memory:
     leant: tuple[tuple[int, BeforeThis], ...] = ()  # when attitudes came that were flown, and which
     stream_refused: bool = False  # and the client was told
     good_since_ns: int | None = None  # refused before, its samples would be good since then
-    refused_elsewhere: tuple[tuple[str, Code], ...] = ()  # by source, told once; see `Turn.refuse`
+    refused_elsewhere: tuple[tuple[str, Code], ...] = ()
+    """By source, told once: see `StepContext.refuse`."""
     refused_elsewhere_ns: int = 0  # when the last sample was refused where no stream is flown
 
     # commanded

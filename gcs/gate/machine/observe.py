@@ -43,7 +43,7 @@ from gcs.gate.machine.events import SAW, Event, event_of
 from gcs.gate.machine.memory import HOME_MOVED_M, SECOND_NS, Memory
 from gcs.gate.machine.progress import arrival_radius_h_m, within_arrival
 from gcs.gate.machine.sentences import ASKED_FOR, result_word
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.machine.verifying import refusal_of_what_is_flown
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo
@@ -75,55 +75,55 @@ class Occurrence(NamedTuple):
     breach: Breach | None = None
 
 
-def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
+def events_from(step: StepContext, given: Input) -> Iterator[Occurrence]:
     """Store what `given` reports, and yield the events that follow from it.
 
     A generator because the caller handles each event before the next one is looked for.
     """
-    memory = turn.memory
+    memory = step.memory
     match given:
         case Requested():
             if isinstance(given.request, GoTo):
-                turn.say(Level.INFO, f"Requested Position: {place(given.request.goal_ned)}")
+                step.say(Level.INFO, f"Requested Position: {place(given.request.goal_ned)}")
             yield Occurrence(event_of(given.request))
         case StreamSeen():
             yield Occurrence(Event.STREAM_SAMPLE)
         case HeartbeatSeen():
-            yield from _heartbeat(turn, given)
+            yield from _heartbeat(step, given)
         case MessageSeen():
             if memory.heard_ns is not None:
-                memory.heard_ns = turn.now_ns
+                memory.heard_ns = step.now_ns
         case LandedSeen(landed):
-            yield from _landed(turn, landed)
+            yield from _landed(step, landed)
         case PositionSeen():
-            yield from _position(turn, given)
+            yield from _position(step, given)
         case CommandEnded():
-            yield from _command_answer(turn, given)
+            yield from _command_answer(step, given)
         case HomeSeen(pos_ned):
-            yield from _home(turn, pos_ned)
+            yield from _home(step, pos_ned)
         case ReturnHeightSeen(up_m):
             memory.return_up_m = up_m
         case ReturnPlacesSeen(places, unknown):
             memory.return_places, memory.return_unknown = places, unknown
         case AccuracySeen():
-            memory.arrival_h_m = arrival_radius_h_m(turn.policy.arrival, given)
+            memory.arrival_h_m = arrival_radius_h_m(step.policy.arrival, given)
         case ClimbEndSeen(within_m):
             memory.climb_ends_within_m = within_m
         case VerifierChanged(verifier):
-            yield from _verifier(turn, verifier)
+            yield from _verifier(step, verifier)
         case PhotoSeen():
-            yield from _photo(turn, given)
+            yield from _photo(step, given)
         case MissionLoaded():
-            yield from _mission(turn, given)
+            yield from _mission(step, given)
         case MissionPathVerified(within):
             memory.mission_within = within
         case MissionSeen(seq, total, finished):
             memory.mission_over = finished or 0 < total <= seq + 1
             yield Occurrence(Event.MISSION_FINISHED if finished else Event.MISSION_ITEM)
         case ConditionChanged():
-            _condition(turn, given)
+            _condition(step, given)
         case OperatorLost(reason, for_good):
-            turn.say(Level.INFO, f"The operator leaves: {reason}")
+            step.say(Level.INFO, f"The operator leaves: {reason}")
             memory.operator_lost |= for_good
             yield Occurrence(Event.OPERATOR_LOST)
         case Tick():
@@ -132,10 +132,10 @@ def events_from(turn: Turn, given: Input) -> Iterator[Occurrence]:
             assert_never(given)
 
 
-def _heartbeat(turn: Turn, seen: HeartbeatSeen) -> Iterator[Occurrence]:
-    memory = turn.memory
+def _heartbeat(step: StepContext, seen: HeartbeatSeen) -> Iterator[Occurrence]:
+    memory = step.memory
     was_armed, was_mode = memory.armed, memory.mode
-    memory.heard_ns, memory.heard_before = turn.now_ns, True
+    memory.heard_ns, memory.heard_before = step.now_ns, True
     memory.armed, memory.mode, memory.mode_name = seen.armed, seen.mode, seen.mode_name
     used = memory.guided_used or seen.armed or was_mode is None
     memory.guided_used = used and seen.mode is FlightMode.GUIDED
@@ -146,7 +146,7 @@ def _heartbeat(turn: Turn, seen: HeartbeatSeen) -> Iterator[Occurrence]:
         return
     if seen.armed and not was_armed:
         yield Occurrence(Event.ARMED)
-    elif not seen.armed and (was_armed or _disarm_answered(turn)):
+    elif not seen.armed and (was_armed or _disarm_answered(step)):
         yield Occurrence(Event.DISARMED)
     if seen.mode is memory.asked_mode:
         yield Occurrence(Event.MODE_CONFIRMED)
@@ -154,10 +154,10 @@ def _heartbeat(turn: Turn, seen: HeartbeatSeen) -> Iterator[Occurrence]:
         yield Occurrence(SAW[seen.mode])
 
 
-def _disarm_answered(turn: Turn) -> bool:
+def _disarm_answered(step: StepContext) -> bool:
     """A vehicle that was never seen armed was told to disarm, and has answered: the heartbeat
     that follows counts as the report that it is disarmed."""
-    memory = turn.memory
+    memory = step.memory
     return (
         memory.state is State.GROUNDED
         and memory.task is not None
@@ -166,11 +166,11 @@ def _disarm_answered(turn: Turn) -> bool:
     )
 
 
-def _landed(turn: Turn, landed: LandedState) -> Iterator[Occurrence]:
-    memory = turn.memory
+def _landed(step: StepContext, landed: LandedState) -> Iterator[Occurrence]:
+    memory = step.memory
     was, flew = memory.landed, memory.airborne
-    memory.landed, memory.landed_ns = landed, turn.now_ns
-    climbs = memory.flown_state is State.TAKING_OFF or turn.now_ns < memory.takeoff_until_ns
+    memory.landed, memory.landed_ns = landed, step.now_ns
+    climbs = memory.flown_state is State.TAKING_OFF or step.now_ns < memory.takeoff_until_ns
     if landed is LandedState.ON_GROUND and memory.pos_ned is not None and not climbs:
         memory.ground_down_m = memory.pos_ned[2]
     if landed is LandedState.ON_GROUND and was is not landed:
@@ -179,19 +179,19 @@ def _landed(turn: Turn, landed: LandedState) -> Iterator[Occurrence]:
         yield Occurrence(Event.AIRBORNE)
 
 
-def _home(turn: Turn, pos_ned: Vec3) -> Iterator[Occurrence]:
-    memory = turn.memory
+def _home(step: StepContext, pos_ned: Vec3) -> Iterator[Occurrence]:
+    memory = step.memory
     was_ned, memory.home_ned = memory.home_ned, pos_ned
     if was_ned is None or memory.on_ground or math.dist(was_ned, pos_ned) <= HOME_MOVED_M:
         return
     moved_m = math.dist(was_ned, pos_ned)
-    turn.say(Level.WARNING, f"Home moved by {moved_m:.1f} m while the vehicle flies")
+    step.say(Level.WARNING, f"Home moved by {moved_m:.1f} m while the vehicle flies")
     yield Occurrence(Event.HOME_MOVED)
 
 
-def _verifier(turn: Turn, verifier: Verifier) -> Iterator[Occurrence]:
+def _verifier(step: StepContext, verifier: Verifier) -> Iterator[Occurrence]:
     """What is flown under our control is judged again by a verifier that changed."""
-    memory = turn.memory
+    memory = step.memory
     was, memory.verifier = memory.verifier, verifier
     memory.autopilot = verifier.autopilot
     if verifier == was or memory.control is Control.NONE:
@@ -201,9 +201,9 @@ def _verifier(turn: Turn, verifier: Verifier) -> Iterator[Occurrence]:
         yield Occurrence(Event.CLEARS_NO_MORE, why)
 
 
-def _mission(turn: Turn, loaded: MissionLoaded) -> Iterator[Occurrence]:
+def _mission(step: StepContext, loaded: MissionLoaded) -> Iterator[Occurrence]:
     """What is flown as a mission is refused once it is known that another one may be on board."""
-    memory = turn.memory
+    memory = step.memory
     memory.mission_name, memory.mission_items = loaded.name, loaded.items
     memory.mission_over, memory.mission_within = False, None
     if not loaded.items and memory.flown_state is State.FLYING_MISSION:
@@ -211,9 +211,9 @@ def _mission(turn: Turn, loaded: MissionLoaded) -> Iterator[Occurrence]:
         yield Occurrence(Event.CLEARS_NO_MORE, Refusal(Code.BAD_MISSION, text))
 
 
-def _photo(turn: Turn, seen: PhotoSeen) -> Iterator[Occurrence]:
+def _photo(step: StepContext, seen: PhotoSeen) -> Iterator[Occurrence]:
     """A picture with the same index as the last one is that picture, reported again."""
-    memory = turn.memory
+    memory = step.memory
     was_index, memory.photo_index = memory.photo_index, seen.index
     if seen.index == was_index:
         return
@@ -222,24 +222,24 @@ def _photo(turn: Turn, seen: PhotoSeen) -> Iterator[Occurrence]:
     yield Occurrence(Event.PHOTO_SEEN, why)
 
 
-def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
+def _position(step: StepContext, seen: PositionSeen) -> Iterator[Occurrence]:
     """Drops a sample that is not finite or older than the last one.  From every other the stop is
     predicted, where we have or take control."""
-    memory = turn.memory
+    memory = step.memory
     if not all(map(math.isfinite, (*seen.pos_ned, *seen.v_ned))):
         return
     if seen.time_boot_ms < memory.boot_ms and not seen.reset:
         return
-    jumped = seen.reset or _faster_than_allowed(turn, seen)
+    jumped = seen.reset or _faster_than_allowed(step, seen)
     if jumped:
         memory.ground_down_m = None
     memory.pos_ned, memory.v_ned = seen.pos_ned, seen.v_ned
-    memory.pos_ns, memory.boot_ms = turn.now_ns, seen.time_boot_ms
+    memory.pos_ns, memory.boot_ms = step.now_ns, seen.time_boot_ms
     memory.late_s = seen.late_s
-    if memory.goal is None or not within_arrival(turn, memory.goal.pos_ned):
+    if memory.goal is None or not within_arrival(step, memory.goal.pos_ned):
         memory.within_since_ns = None
     elif memory.within_since_ns is None:
-        memory.within_since_ns = turn.now_ns
+        memory.within_since_ns = step.now_ns
     if jumped:
         yield Occurrence(Event.POSITION_JUMPED)
     if memory.comes_back and _is_inside(memory):
@@ -250,7 +250,7 @@ def _position(turn: Turn, seen: PositionSeen) -> Iterator[Occurrence]:
             seen.v_ned,
             memory.path,
             seen.late_s,
-            floor_applies=_floor_applies(turn),
+            floor_applies=_floor_applies(step),
         )
         if breach is not None:
             why = Refusal(Code.FENCE_BREACH, breach.sentence, breach.numbers, breach.zone)
@@ -267,47 +267,47 @@ def _is_inside(memory: Memory) -> bool:
     return not told and not isinstance(judged, Refusal)
 
 
-def _floor_applies(turn: Turn) -> bool:
+def _floor_applies(step: StepContext) -> bool:
     """A mission begins on the ground, and PX4 may end its climb below half a metre already."""
-    memory = turn.memory
+    memory = step.memory
     low = memory.ground_down_m is not None and not memory.climbed
     if memory.flown_state is State.FLYING_MISSION and low:
         return False
     return memory.flown_state not in FLOOR_FREE and memory.landed is LandedState.IN_AIR
 
 
-def _faster_than_allowed(turn: Turn, seen: PositionSeen) -> bool:
+def _faster_than_allowed(step: StepContext, seen: PositionSeen) -> bool:
     """Did the position move faster than the policy allows: is it a jump?
 
     The time between two samples is taken from the vehicle's own stamps, because samples may wait
     in queues on their way.  A stamp that advanced by more than the time between the arrivals plus
     the age at which a position is too old cannot be explained by that: it counts as a jump.
     """
-    memory = turn.memory
-    late_ns = round(turn.policy.position_age_s * SECOND_NS)
+    memory = step.memory
+    late_ns = round(step.policy.position_age_s * SECOND_NS)
     if memory.pos_ned is None or memory.pos_ns is None:
         return False
-    arrived_ns = turn.now_ns - memory.pos_ns
+    arrived_ns = step.now_ns - memory.pos_ns
     stamped_ns = (seen.time_boot_ms - memory.boot_ms) * 1_000_000
     if stamped_ns > arrived_ns + late_ns:
         return True  # its clock stepped forward: a restart, or no clock
     elapsed_ns = stamped_ns or arrived_ns
-    allowed_m = turn.policy.jump_speed_m_s * elapsed_ns / SECOND_NS + JUMP_LEAST_M
+    allowed_m = step.policy.jump_speed_m_s * elapsed_ns / SECOND_NS + JUMP_LEAST_M
     return math.dist(seen.pos_ned, memory.pos_ned) > allowed_m
 
 
-def _command_answer(turn: Turn, ended: CommandEnded) -> Iterator[Occurrence]:
+def _command_answer(step: StepContext, ended: CommandEnded) -> Iterator[Occurrence]:
     """An answer, or its absence, ends a command and nothing else.  What the vehicle does follows
     from its own reports.  An answer to a command that is not outstanding is only reported."""
-    memory, key = turn.memory, (ended.request_id, ended.kind)
+    memory, key = step.memory, (ended.request_id, ended.kind)
     name = ended.kind.value.replace("_", " ")
     asked_for = ASKED_FOR[ended.kind]
     said = f": {ended.text}" if ended.text else ""
     if key not in memory.outstanding:
         if ended.result is None and memory.silence_reported is not ended.kind:
-            turn.say(Level.INFO, f"No answer to {name}, which is waited for no longer{said}")
+            step.say(Level.INFO, f"No answer to {name}, which is waited for no longer{said}")
         elif ended.result is not None:
-            turn.say(Level.INFO, f"A late answer to {name}, not acted on{said}")
+            step.say(Level.INFO, f"A late answer to {name}, not acted on{said}")
         yield Occurrence(Event.LATE_ANSWER)
         return
     memory.outstanding = tuple(other for other in memory.outstanding if other != key)
@@ -317,7 +317,7 @@ def _command_answer(turn: Turn, ended: CommandEnded) -> Iterator[Occurrence]:
         yield Occurrence(Event.COMMAND_ACCEPTED)
     elif ended.result is None:
         if memory.silence_reported is not ended.kind:
-            turn.say(Level.WARNING, f"No answer to the request for {asked_for}")
+            step.say(Level.WARNING, f"No answer to the request for {asked_for}")
         memory.silence_reported = ended.kind
         silent = ended.kind is CommandKind.HOLD
         yield Occurrence(Event.HOLD_UNANSWERED if silent else Event.COMMAND_UNANSWERED)
@@ -327,17 +327,17 @@ def _command_answer(turn: Turn, ended: CommandEnded) -> Iterator[Occurrence]:
         yield Occurrence(REFUSED_AS.get(ended.kind, Event.COMMAND_REFUSED), why)
 
 
-def _condition(turn: Turn, changed: ConditionChanged) -> None:
-    memory = turn.memory
+def _condition(step: StepContext, changed: ConditionChanged) -> None:
+    memory = step.memory
     others = tuple(pair for pair in memory.conditions if pair[0] is not changed.condition)
     if changed.active:
         memory.conditions = tuple(sorted((*others, (changed.condition, changed.text))))
     else:
         memory.conditions = others
-    severity = turn.policy.severities[changed.condition]
+    severity = step.policy.severities[changed.condition]
     if changed.active:
         idle = memory.state is State.EXTERNAL and severity > Severity.CAUTION
         text = f"{severity.name}: {changed.condition.value}: {changed.text}"
-        turn.say(Level.WARNING, f"{text}{NOT_OURS}" if idle else text)
+        step.say(Level.WARNING, f"{text}{NOT_OURS}" if idle else text)
     else:
-        turn.say(Level.INFO, f"No longer {severity.name}: {changed.condition.value}")
+        step.say(Level.INFO, f"No longer {severity.name}: {changed.condition.value}")

@@ -9,7 +9,7 @@ from gcs.frames import Vec3
 from gcs.gate.inputs import AccuracySeen
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.policy.policy import Arrival
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import FlightMode
@@ -43,12 +43,12 @@ def arrival_radius_h_m(arrival: Arrival, seen: AccuracySeen) -> float | None:
     return max(arrival.radius_m, min(arrival.radius_m + accuracy_m, most_m))
 
 
-def within_arrival(turn: Turn, goal_ned: Vec3) -> bool:
+def within_arrival(step: StepContext, goal_ned: Vec3) -> bool:
     """Strictly inside the arrival radius, and slow enough where the policy asks for it.
 
     With the vehicle's accuracy the sphere about the goal grows sideways: an ellipsoid.
     """
-    memory, arrival = turn.memory, turn.policy.arrival
+    memory, arrival = step.memory, step.policy.arrival
     if memory.pos_ned is None or memory.v_ned is None:
         return False
     narrower = arrival.radius_m / (memory.arrival_h_m or arrival.radius_m)
@@ -57,81 +57,81 @@ def within_arrival(turn: Turn, goal_ned: Vec3) -> bool:
     return near and (arrival.speed_m_s is None or math.hypot(*memory.v_ned) <= arrival.speed_m_s)
 
 
-def arrived(turn: Turn) -> bool:
+def arrived(step: StepContext) -> bool:
     """Within the arrival radius for as long as the policy asks, by a fresh position."""
-    since_ns = turn.memory.within_since_ns
-    if since_ns is None or turn.stale or not _at_height_asked_for(turn):
+    since_ns = step.memory.within_since_ns
+    if since_ns is None or step.stale or not _at_height_asked_for(step):
         return False
-    return turn.now_ns - since_ns >= round(turn.policy.arrival.dwell_s * SECOND_NS)
+    return step.now_ns - since_ns >= round(step.policy.arrival.dwell_s * SECOND_NS)
 
 
-def _at_height_asked_for(turn: Turn) -> bool:
+def _at_height_asked_for(step: StepContext) -> bool:
     """Of a take-off; another goal has no height of its own."""
-    task, above_m = turn.memory.task, _above_top_m(turn)
+    task, above_m = step.memory.task, _above_top_m(step)
     if task is None or task.kind is not Event.TAKE_OFF:
         return True
     return above_m is not None and abs(above_m) < HEIGHT_WITHIN_M
 
 
-def at_height(turn: Turn) -> bool:
+def at_height(step: StepContext) -> bool:
     """The climb is over, at its top, or as far below it as the vehicle itself ends a climb."""
-    memory, radius_m = turn.memory, turn.policy.arrival.radius_m
-    above_m = _above_top_m(turn)
+    memory, radius_m = step.memory, step.policy.arrival.radius_m
+    above_m = _above_top_m(step)
     if not memory.airborne or above_m is None:
         return False
     if abs(above_m) < radius_m:
-        return _shows_hold(turn) or _slow(turn)
+        return _shows_hold(step) or _slow(step)
     ends_there = -(radius_m + memory.climb_ends_within_m) < above_m < 0.0
-    return ends_there and _shows_hold(turn) and _slow(turn)
+    return ends_there and _shows_hold(step) and _slow(step)
 
 
-def nearly_at_height(turn: Turn) -> bool:
+def nearly_at_height(step: StepContext) -> bool:
     """In the last tenth of the climb, or within the arrival radius of its top."""
-    memory, above_m = turn.memory, _above_top_m(turn)
+    memory, above_m = step.memory, _above_top_m(step)
     if above_m is None or memory.ground_down_m is None:
         return False
     climb_m = memory.ground_down_m - memory.top_ned[2]
-    return above_m > -max(turn.policy.arrival.radius_m, LAST_SHARE * climb_m)
+    return above_m > -max(step.policy.arrival.radius_m, LAST_SHARE * climb_m)
 
 
-def climb_ended_elsewhere(turn: Turn) -> bool:
+def climb_ended_elsewhere(step: StepContext) -> bool:
     """The vehicle shows that its climb is over, and stands still in the air.
 
     To be asked after `at_height`: it does not look at the height itself.
     """
-    above_m = _above_top_m(turn)
-    if not turn.memory.airborne or above_m is None or not (_shows_hold(turn) and _slow(turn)):
+    above_m = _above_top_m(step)
+    if not step.memory.airborne or above_m is None or not (_shows_hold(step) and _slow(step)):
         return False
     side = "below" if above_m < 0.0 else "above"
     sentence = f"the vehicle ended its climb {abs(above_m):.1f} m {side} the height asked for"
-    turn.why = Refusal(Code.VEHICLE_REFUSED, sentence, (("above_top_m", above_m),))
+    step.why = Refusal(Code.VEHICLE_REFUSED, sentence, (("above_top_m", above_m),))
     return True
 
 
-def climbs_too_high(turn: Turn) -> bool:
+def climbs_too_high(step: StepContext) -> bool:
     """Further above the top of the climb than an overshoot explains."""
-    above_m = _above_top_m(turn)
-    return above_m is not None and above_m > turn.policy.arrival.radius_m + OVERSHOOT_M
+    above_m = _above_top_m(step)
+    return above_m is not None and above_m > step.policy.arrival.radius_m + OVERSHOOT_M
 
 
-def _above_top_m(turn: Turn) -> float | None:
+def _above_top_m(step: StepContext) -> float | None:
     """Metres above the top of the climb, negative below it; None where the position is too old."""
-    memory = turn.memory
-    if turn.stale or memory.pos_ned is None:
+    memory = step.memory
+    if step.stale or memory.pos_ned is None:
         return None
     return memory.top_ned[2] - memory.pos_ned[2]
 
 
-def _slow(turn: Turn) -> bool:
-    v_ned = turn.memory.v_ned
+def _slow(step: StepContext) -> bool:
+    v_ned = step.memory.v_ned
     return v_ned is not None and math.hypot(*v_ned) < CLIMB_ENDED_M_S
 
 
-def _shows_hold(turn: Turn) -> bool:
+def _shows_hold(step: StepContext) -> bool:
     """The heartbeat shows hold mode, as px4 does after a climb.
 
     As long as the take-off mode is awaited, a hold mode is still that of before the take-off.
     """
-    memory = turn.memory
+    memory = step.memory
     shown = memory.asked_mode is None
     return memory.lifted and shown and memory.mode is FlightMode.HOLD

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 
 from gcs.gate.machine.events import REQUESTS, Event
 from gcs.gate.machine.rows.row import BACK, BACK_STATES, COLUMNS, STAY, Branch, Cell
+from gcs.gate.machine.step_context import Reply
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
-from gcs.gate.machine.turn import Reply
 from gcs.gate.states import State
 
 

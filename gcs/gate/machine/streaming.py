@@ -14,53 +14,53 @@ from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS, FlownSample, Goal
 from gcs.gate.machine.sentences import no_fresh_position
-from gcs.gate.machine.turn import End, Turn
+from gcs.gate.machine.step_context import End, StepContext
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
 
 # ----------------------------------------------------------------------------------- guards
 
 
-def own_stream(turn: Turn) -> bool:
-    return turn.source == turn.memory.streamer
+def own_stream(step: StepContext) -> bool:
+    return step.source == step.memory.streamer
 
 
-def interrupted_stream(turn: Turn) -> bool:
+def interrupted_stream(step: StepContext) -> bool:
     """A position too old has interrupted it; its client goes on."""
-    return turn.memory.back_to is State.STREAMING and own_stream(turn)
+    return step.memory.back_to is State.STREAMING and own_stream(step)
 
 
-def samples_good_again(turn: Turn) -> bool:
+def samples_good_again(step: StepContext) -> bool:
     """The sample clears, and so did all before it for the policy's time, where one was refused."""
-    memory, rules = turn.memory, turn.policy.stream
-    if verifying.given_sample(turn) is not None:
+    memory, rules = step.memory, step.policy.stream
+    if verifying.given_sample(step) is not None:
         return False
     if not memory.stream_refused:
         return True
-    if memory.good_since_ns is None or _gap(turn):
+    if memory.good_since_ns is None or _gap(step):
         return False
-    return turn.now_ns - memory.good_since_ns >= round(rules.good_again_s * SECOND_NS)
+    return step.now_ns - memory.good_since_ns >= round(rules.good_again_s * SECOND_NS)
 
 
-def clears_no_more(turn: Turn) -> bool:
-    return turn.memory.flown is not None and verifying.flown_sample(turn) is not None
+def clears_no_more(step: StepContext) -> bool:
+    return step.memory.flown is not None and verifying.flown_sample(step) is not None
 
 
-def silent(turn: Turn) -> bool:
+def silent(step: StepContext) -> bool:
     """Its last sample counts no more."""
-    deadman_s = turn.policy.stream.deadman_s
-    memory = turn.memory
-    if memory.flown is None or turn.now_ns - memory.sample_ns < round(deadman_s * SECOND_NS):
+    deadman_s = step.policy.stream.deadman_s
+    memory = step.memory
+    if memory.flown is None or step.now_ns - memory.sample_ns < round(deadman_s * SECOND_NS):
         return False
-    turn.why = _nothing_came_for(deadman_s)
+    step.why = _nothing_came_for(deadman_s)
     return True
 
 
-def over(turn: Turn) -> bool:
-    ends_after_s = turn.policy.stream.ends_after_s
-    if turn.now_ns - turn.memory.streamed_ns < round(ends_after_s * SECOND_NS):
+def over(step: StepContext) -> bool:
+    ends_after_s = step.policy.stream.ends_after_s
+    if step.now_ns - step.memory.streamed_ns < round(ends_after_s * SECOND_NS):
         return False
-    turn.why = _nothing_came_for(ends_after_s)
+    step.why = _nothing_came_for(ends_after_s)
     return True
 
 
@@ -69,85 +69,85 @@ def _nothing_came_for(seconds: float) -> Refusal:
     return Refusal(Code.DEADLINE, sentence, (("silent_s", seconds),))
 
 
-def _gap(turn: Turn) -> bool:
+def _gap(step: StepContext) -> bool:
     """The sample before this one counted no more when this one came."""
-    deadman_ns = round(turn.policy.stream.deadman_s * SECOND_NS)
-    return turn.now_ns - turn.memory.streamed_ns > deadman_ns
+    deadman_ns = round(step.policy.stream.deadman_s * SECOND_NS)
+    return step.now_ns - step.memory.streamed_ns > deadman_ns
 
 
 # ---------------------------------------------------------------------------------- actions
 
 
-def begin(turn: Turn) -> None:
+def begin(step: StepContext) -> None:
     """From now on the stream is this client's.  A vehicle that flies to a goal is held in place."""
-    memory = turn.memory
-    memory.streamer, memory.streamed_ns = turn.source, turn.now_ns
+    memory = step.memory
+    memory.streamer, memory.streamed_ns = step.source, step.now_ns
     memory.flown, memory.stream_refused, memory.good_since_ns = None, False, None
     memory.refused_elsewhere = ()
     if memory.goal is not None:
         memory.goal = None
-        if turn.policy.stream.tilt_deg > 0.0:
-            memory.leant = ((turn.now_ns, None),)
-        _hold_ahead(turn)
+        if step.policy.stream.tilt_deg > 0.0:
+            memory.leant = ((step.now_ns, None),)
+        _hold_ahead(step)
 
 
-def fly(turn: Turn) -> None:
+def fly(step: StepContext) -> None:
     """Send the sample that came, and nothing else, from the next tick on."""
-    memory = turn.memory
-    assert turn.streamed is not None
+    memory = step.memory
+    assert step.streamed is not None
     if memory.flown is None:
-        turn.out.append(StreamVerdict(memory.streamer, None, turn.evidence))
-        turn.say(Level.INFO, f"The stream of {memory.streamer} is flown")
-    sample = verifying.sample_of(turn.streamed)
+        step.out.append(StreamVerdict(memory.streamer, None, step.evidence))
+        step.say(Level.INFO, f"The stream of {memory.streamer} is flown")
+    sample = verifying.sample_of(step.streamed)
     if sample.attitude is not None:
-        memory.leant = verifying.leaning_on(turn, sample.attitude)
-    memory.flown = FlownSample(sample, turn.evidence)
-    memory.sample_ns = memory.streamed_ns = turn.now_ns
+        memory.leant = verifying.leaning_on(step, sample.attitude)
+    memory.flown = FlownSample(sample, step.evidence)
+    memory.sample_ns = memory.streamed_ns = step.now_ns
     memory.stream_refused, memory.good_since_ns = False, None
     memory.hold = None
 
 
-def note(turn: Turn) -> None:
-    turn.memory.streamed_ns = turn.now_ns
+def note(step: StepContext) -> None:
+    step.memory.streamed_ns = step.now_ns
 
 
-def note_good(turn: Turn) -> None:
+def note_good(step: StepContext) -> None:
     """It clears; but samples before it were refused, and it waits for more that clear."""
-    memory = turn.memory
-    if memory.good_since_ns is None or _gap(turn):
-        memory.good_since_ns = turn.now_ns
-    memory.streamed_ns = turn.now_ns
+    memory = step.memory
+    if memory.good_since_ns is None or _gap(step):
+        memory.good_since_ns = step.now_ns
+    memory.streamed_ns = step.now_ns
 
 
-def hold_in_place(turn: Turn) -> None:
+def hold_in_place(step: StepContext) -> None:
     """Hold where the vehicle is, and tell the client why its samples are not flown."""
-    memory = turn.memory
-    turn.refuse_stream(turn.why or no_fresh_position(memory))
+    memory = step.memory
+    step.refuse_stream(step.why or no_fresh_position(memory))
     if memory.flown is not None:
         memory.flown = None
-        _hold_ahead(turn)
+        _hold_ahead(step)
 
 
-def end(turn: Turn) -> None:
+def end(step: StepContext) -> None:
     """The stream is over, in good order: the vehicle hovers where it is."""
-    memory = turn.memory
-    turn.say(Level.INFO, f"The stream of {memory.streamer} is over")
-    turn.end(End(OutcomeKind.COMPLETE))
+    memory = step.memory
+    step.say(Level.INFO, f"The stream of {memory.streamer} is over")
+    step.end(End(OutcomeKind.COMPLETE))
     if memory.flown is not None:
         memory.flown = None
-        _hold_ahead(turn)
+        _hold_ahead(step)
 
 
-def _hold_ahead(turn: Turn) -> None:
+def _hold_ahead(step: StepContext) -> None:
     """The hold goal is where the vehicle is when it hears of it.  Where no such place clears, what
     is flown clears no more, and only hold mode is left."""
-    memory = turn.memory
+    memory = step.memory
     assert memory.pos_ned is not None
-    hold_ned = verifying.hold_ahead(turn)
+    hold_ned = verifying.hold_ahead(step)
     if hold_ned is None:
         memory.hold = None
-        turn.why = Refusal(Code.CANNOT_STOP, "no place to hold the vehicle at clears")
-        turn.raised.append(Event.CLEARS_NO_MORE)
+        step.why = Refusal(Code.CANNOT_STOP, "no place to hold the vehicle at clears")
+        step.raised.append(Event.CLEARS_NO_MORE)
         return
     evidence = (("ahead_m", math.dist(memory.pos_ned, hold_ned)),)
     memory.hold = Goal(hold_ned, None, evidence)

@@ -14,8 +14,8 @@ from gcs.gate.machine.checks import Check
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.row import Branch, Cell
+from gcs.gate.machine.step_context import End, Reply
 from gcs.gate.machine.table import TABLE
-from gcs.gate.machine.turn import End, Reply
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 

@@ -13,7 +13,7 @@ from gcs.gate.inputs import Requested, Tick
 from gcs.gate.machine import progress
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import Memory, Task
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.requests import TakePhoto
 from gcs.gate.states import State
 from tests.unit.gate.flight_words import Flight, place
@@ -85,8 +85,8 @@ def test_nothing_is_known_of_a_climb_whose_position_is_too_old() -> None:
     script, _ = flight(State.TAKING_OFF)
     memory = script.gate.memory
     memory.pos_ned = (0.0, 0.0, -30.0)
-    assert progress.climbs_too_high(Turn(script.policy, memory, script.now_ns))
-    old = Turn(script.policy, memory, script.now_ns + 2 * SECOND)
+    assert progress.climbs_too_high(StepContext(script.policy, memory, script.now_ns))
+    old = StepContext(script.policy, memory, script.now_ns + 2 * SECOND)
     assert not progress.climbs_too_high(old)
 
 

@@ -20,8 +20,8 @@ from gcs.gate.effects import CommandKind
 from gcs.gate.machine import commanding, gate
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.rows.row import Branch
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.machine.table import TABLE
-from gcs.gate.machine.turn import Turn
 from gcs.gate.refusal import Code
 from gcs.gate.states import Control, State
 from tests.proof.alphabet import ALPHABET
@@ -163,8 +163,8 @@ def test_a_planted_fault_is_found_with_its_shortest_trace(planted: Planted) -> N
 def test_an_ardupilot_that_is_armed_again_in_the_same_guided_mode_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def at_once(turn: Turn, reason: str) -> None:
-        turn.command(CommandKind.ARM, reason)
+    def at_once(step: StepContext, reason: str) -> None:
+        step.command(CommandKind.ARM, reason)
 
     monkeypatch.setattr(commanding, "_arm_or_its_mode", at_once)
     fault = Explorer(WORLDS["ardupilot"]).explore().fault
@@ -174,7 +174,7 @@ def test_an_ardupilot_that_is_armed_again_in_the_same_guided_mode_is_found(
 
 
 def test_a_goal_that_is_sent_bare_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def bare(_turn: Turn, goal_ned: Vec3, _beside_ned: Vec3 | None = None) -> Vec3:
+    def bare(_step: StepContext, goal_ned: Vec3, _beside_ned: Vec3 | None = None) -> Vec3:
         return goal_ned
 
     monkeypatch.setattr(gate, "towards", bare)

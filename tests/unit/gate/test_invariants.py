@@ -33,8 +33,8 @@ from gcs.gate.machine.events import Event
 from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.machine.rows.row import Branch
+from gcs.gate.machine.step_context import Reply
 from gcs.gate.machine.table import TABLE, Table
-from gcs.gate.machine.turn import Reply
 from gcs.gate.permit import Permit
 from gcs.gate.policy.policy import Policy
 from gcs.gate.requests import GoTo, Resume, TakeControl

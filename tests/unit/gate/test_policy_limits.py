@@ -9,7 +9,7 @@ import pytest
 
 from gcs.gate.airspace.stopping import distance_h_m, distance_v_m
 from gcs.gate.machine.memory import SECOND_NS, Memory
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.policy.policy import Approach, Braking, Pace, Policy
 from gcs.gate.policy.zonespec import CircleSpec, ZoneSpec
@@ -120,8 +120,8 @@ class TestInUse:
     def test_a_position_may_be_asked_to_be_as_young_as_a_twentieth_of_a_second(self) -> None:
         policy = parse_policy("position_age_s = 0.05", "my.toml")
         memory = Memory("px4", pos_ns=0)
-        assert not Turn(policy, memory, SECOND_NS // 20).stale
-        assert Turn(policy, memory, SECOND_NS // 20 + 1).stale
+        assert not StepContext(policy, memory, SECOND_NS // 20).stale
+        assert StepContext(policy, memory, SECOND_NS // 20 + 1).stale
 
     def test_a_vehicle_may_be_missed_after_a_second(self) -> None:
         script = Script(parse_policy("heartbeat_age_s = 1.0", "my.toml")).connect()

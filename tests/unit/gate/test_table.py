@@ -20,8 +20,8 @@ from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.cells import cannot_happen, unchanged
 from gcs.gate.machine.rows.row import COLUMNS, Branch, during, row
 from gcs.gate.machine.sentences import ENDED, REFUSED
+from gcs.gate.machine.step_context import Reply
 from gcs.gate.machine.table import ROWS, STREAMS, TABLE, Streams
-from gcs.gate.machine.turn import Reply
 from gcs.gate.requests import (
     Arm,
     Disarm,

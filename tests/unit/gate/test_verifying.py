@@ -18,7 +18,7 @@ from gcs.gate.geometry import Circle, Polygon, Shape
 from gcs.gate.inputs import Requested
 from gcs.gate.machine import verifying
 from gcs.gate.machine.memory import SECOND_NS, Goal, Memory
-from gcs.gate.machine.turn import Turn
+from gcs.gate.machine.step_context import StepContext
 from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo, TakeOff
@@ -32,7 +32,7 @@ FENCE = verifier_for(DEFAULT, "px4", HOME, None)
 GOAL = GoTo(at(10, 0, 5))
 
 
-def turn(facts: Mapping[str, object] | None = None, *, age_s: float = 0.2) -> Turn:
+def step(facts: Mapping[str, object] | None = None, *, age_s: float = 0.2) -> StepContext:
     """All is known and the vehicle stands at `HERE`, but for the memory's fields in `facts`."""
     memory = Memory(
         "px4", pos_ned=HERE, v_ned=HOME, home_ned=HOME, return_up_m=20.0, return_places=()
@@ -42,7 +42,7 @@ def turn(facts: Mapping[str, object] | None = None, *, age_s: float = 0.2) -> Tu
     for name, value in (facts or {}).items():
         assert hasattr(memory, name)
         setattr(memory, name, value)
-    made = Turn(DEFAULT, memory, NOW_NS)
+    made = StepContext(DEFAULT, memory, NOW_NS)
     made.requested = Requested(1, "keyboard", TakeOff(2.0))
     return made
 
@@ -51,7 +51,7 @@ def code(refusal: Refusal | None) -> Code | None:
     return None if refusal is None else refusal.code
 
 
-QUESTIONS: dict[str, Callable[[Turn], Refusal | None]] = {
+QUESTIONS: dict[str, Callable[[StepContext], Refusal | None]] = {
     "position": verifying.position,
     "climb": verifying.climb,
     "goal": lambda asked: verifying.goal(asked, GOAL),
@@ -62,7 +62,7 @@ QUESTIONS: dict[str, Callable[[Turn], Refusal | None]] = {
 class TestEveryQuestion:
     @pytest.mark.parametrize("question", QUESTIONS)
     def test_it_is_cleared_where_all_is_known(self, question: str) -> None:
-        asked = turn()
+        asked = step()
         assert QUESTIONS[question](asked) is None
         assert asked.evidence
         assert asked.why is None
@@ -88,7 +88,7 @@ class TestEveryQuestion:
     def test_each_fact_that_is_missing_refuses_it(
         self, question: str, missing: str, expected: Code
     ) -> None:
-        asked = turn({missing: None})
+        asked = step({missing: None})
         assert code(QUESTIONS[question](asked)) is expected
         assert code(asked.why) is expected
 
@@ -98,12 +98,12 @@ class TestEveryQuestion:
     )
     def test_a_position_that_is_too_old_refuses_it(self, question: str, expected: Code) -> None:
         """Older than the default's second; a goal waits for its tick, where the age is asked."""
-        assert QUESTIONS[question](turn(age_s=1.0)) is None
-        assert code(QUESTIONS[question](turn(age_s=1.01))) is expected
+        assert QUESTIONS[question](step(age_s=1.0)) is None
+        assert code(QUESTIONS[question](step(age_s=1.01))) is expected
 
     def test_no_return_says_which_fact_is_missing(self) -> None:
         for missing, word in (("home_ned", "home or fence"), ("return_up_m", "return height")):
-            refusal = verifying.return_path(turn({missing: None}))
+            refusal = verifying.return_path(step({missing: None}))
             assert refusal is not None
             assert word in refusal.sentence
             assert refusal.sentence.endswith("land instead")
@@ -124,7 +124,7 @@ class TestWhatIsFlown:
     def refusal(
         self, state: State, verifier: Verifier, was: Verifier | None = FENCE, **facts: object
     ) -> Code | None:
-        memory = turn({"pos_ned": self.HIGH, "state": state, **facts}).memory
+        memory = step({"pos_ned": self.HIGH, "state": state, **facts}).memory
         return code(verifying.refusal_of_what_is_flown(memory, verifier, was))
 
     @pytest.mark.parametrize(("up_m", "expected"), [(8.0, None), (4.5, Code.OUTSIDE_FENCE)])

@@ -23,7 +23,7 @@ from gcs.gate.airspace.clearance import (
     inclusion_measures,
     swept_body_measure,
 )
-from gcs.gate.airspace.judge import FenceJudge
+from gcs.gate.airspace.fence_check import FenceCheck
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import TOLERANCE_M, Circle, Polygon
 from gcs.gate.policy.parse import DEFAULT
@@ -43,8 +43,8 @@ LAB = replace(POLICY, bounds_inclusive=True)
 BRAKING = Braking(0.5, 4.0, 2.0, position_error_h_m=0.5, position_error_v_m=0.25)
 
 
-def judge(*zones: Zone, inclusive: bool = False) -> FenceJudge:
-    return FenceJudge(zones, LAB if inclusive else POLICY, BRAKING)
+def judge(*zones: Zone, inclusive: bool = False) -> FenceCheck:
+    return FenceCheck(zones, LAB if inclusive else POLICY, BRAKING)
 
 
 def motion(a: Vec3, b: Vec3) -> Motion:
@@ -228,7 +228,7 @@ class TestLimitOfAStop:
         self, face: Face, limit: StopLimit
     ) -> None:
         policy = replace(POLICY, brake_slack_h_m=3.0, brake_slack_v_m=0.75, creep_m=0.1)
-        assert FenceJudge((), policy, BRAKING).stop_limit(face) == limit
+        assert FenceCheck((), policy, BRAKING).stop_limit(face) == limit
 
     def test_a_smaller_slack_is_that_of_a_body_too(self) -> None:
         assert judge().stop_limit(Face.BODY).slack_m == 1.5
@@ -417,7 +417,7 @@ class TestStops:
 
     def test_a_slack_over_the_margin_is_none_over_a_tower(self) -> None:
         policy = replace(POLICY, brake_slack_v_m=5.0)
-        fence = FenceJudge((TOWER,), policy, BRAKING)
+        fence = FenceCheck((TOWER,), policy, BRAKING)
         assert fence.broken_stop(at(0, 0, 20), at(25, 0, 20), floor_applies=True) is None
         assert fence.broken_stop(at(0, 0, 19.75), at(25, 0, 19.75), floor_applies=True) is not None
 

@@ -11,7 +11,7 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.clearance import Margins
 from gcs.gate.airspace.explain import metres
-from gcs.gate.airspace.judge import FenceJudge
+from gcs.gate.airspace.fence_check import FenceCheck
 from gcs.gate.airspace.limits import beyond_reach
 from gcs.gate.geometry import TOLERANCE_M
 from gcs.gate.refusal import Code, Refusal
@@ -91,6 +91,6 @@ def mission_take_off(bounds: Bounds, from_ned: Vec3, top_ned: Vec3) -> Refusal |
     return None
 
 
-def _judge(bounds: Bounds) -> FenceJudge:
+def _judge(bounds: Bounds) -> FenceCheck:
     """No station holds a mission beside its path: its margin has room for the wind too."""
     return replace(bounds.judge, least_h_m=WIND_DRIFT_S * bounds.policy.mission_wind_m_s)

@@ -13,7 +13,7 @@ from gcs.gate.effects import OutcomeKind
 from gcs.gate.machine.actions import Action
 from gcs.gate.machine.guards import Guard
 from gcs.gate.machine.rows.row import EXTERNAL, GROUNDED, HOLDING, HOVERING, Branch, Cell
-from gcs.gate.machine.turn import End, Reply
+from gcs.gate.machine.step_context import End, Reply
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 

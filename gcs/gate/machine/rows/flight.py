@@ -42,7 +42,7 @@ from gcs.gate.machine.rows.row import (
     during,
     row,
 )
-from gcs.gate.machine.turn import End
+from gcs.gate.machine.step_context import End
 from gcs.gate.refusal import Code
 
 DISARMED: Final = End(OutcomeKind.TAKEN_OVER, Code.NOT_ARMED)

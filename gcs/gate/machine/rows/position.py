@@ -43,7 +43,7 @@ from gcs.gate.machine.rows.row import (
     during,
     row,
 )
-from gcs.gate.machine.turn import End
+from gcs.gate.machine.step_context import End
 from gcs.gate.refusal import Code
 
 LINK_LOST: Final = End(OutcomeKind.ABORTED, Code.LINK_LOST)

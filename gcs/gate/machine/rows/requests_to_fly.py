@@ -34,7 +34,7 @@ from gcs.gate.machine.rows.row import (
     during,
     row,
 )
-from gcs.gate.machine.turn import Reply
+from gcs.gate.machine.step_context import Reply
 from gcs.gate.refusal import Code
 
 refuse_while_taking_control: Final = Branch(

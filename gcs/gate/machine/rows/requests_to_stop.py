@@ -39,7 +39,7 @@ from gcs.gate.machine.rows.row import (
     during,
     row,
 )
-from gcs.gate.machine.turn import Reply
+from gcs.gate.machine.step_context import Reply
 from gcs.gate.refusal import Code
 
 complete_if_surely_on_ground: Final = Branch(when=(Guard.SURELY_ON_GROUND,), reply=Reply.DONE)

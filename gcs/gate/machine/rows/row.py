@@ -20,7 +20,7 @@ from typing import Final, TypeAlias
 from gcs.gate.machine.actions import Action
 from gcs.gate.machine.checks import Check
 from gcs.gate.machine.guards import Guard
-from gcs.gate.machine.turn import End, Reply
+from gcs.gate.machine.step_context import End, Reply
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 

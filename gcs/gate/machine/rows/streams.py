@@ -37,7 +37,7 @@ from gcs.gate.machine.rows.row import (
     during,
     row,
 )
-from gcs.gate.machine.turn import End, Reply
+from gcs.gate.machine.step_context import End, Reply
 from gcs.gate.refusal import Code
 
 SUPERSEDED: Final = End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED)

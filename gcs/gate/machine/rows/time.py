@@ -45,7 +45,7 @@ from gcs.gate.machine.rows.row import (
     during,
     row,
 )
-from gcs.gate.machine.turn import End
+from gcs.gate.machine.step_context import End
 from gcs.gate.refusal import Code
 
 TOO_HIGH: Final = End(OutcomeKind.ABORTED, Code.TOO_HIGH)

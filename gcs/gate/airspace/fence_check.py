@@ -46,7 +46,7 @@ class Slack(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class FenceJudge:
+class FenceCheck:
     """Judges by the zones of one fence; see `clearance.py` for the three rules.
 
     `subject` is what a refusal's sentence begins with.  `floor_applies` says whether the floors of

@@ -1,4 +1,4 @@
-"""A turn: the working state of one `Gate.handle` call, which guards and actions share.
+"""The working state of one `Gate.handle` call, which guards and actions share.
 
 It holds the memory, the policy, the time, and the effects so far.  What moves the vehicle is
 added as a draft: only `gate.py` makes an effect of it, because only there a permit is issued.
@@ -118,7 +118,7 @@ class End:
     goes_on: bool = False
 
 
-class Turn:
+class StepContext:
     """The working state of one `Gate.handle` call.
 
     `out` is what leaves the gate, in order; `raised` are events that an action causes and that
