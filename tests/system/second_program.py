@@ -19,21 +19,21 @@ PX4_AUTO, PX4_LOITER = 4, 3
 
 _NOTED = """
 import sys, time
+from gcs.operator.conversation import Conversation
 from gcs.operator.joined import JoinedStation
 from gcs import ipc
 sent = []
-send, read = JoinedStation.send, JoinedStation._event
+send, told = JoinedStation.send, Conversation.told
 def noting_send(self, command):
     went = send(self, command)
     if isinstance(command, ipc.Ask):
         sent.append(time.monotonic_ns())
     return went
-def noting_event(self, line):
-    event = read(self, line)
+def noting_told(self, event):
     if isinstance(event, ipc.EndingEvent) and event.ended == "complete":
         sent.append(time.monotonic_ns())
-    return event
-JoinedStation.send, JoinedStation._event = noting_send, noting_event
+    return told(self, event)
+JoinedStation.send, Conversation.told = noting_send, noting_told
 """
 _PROGRAMS = {
     "gcs abort": "from gcs.cli.main import run\nassert run(['abort']) == 0\n",
