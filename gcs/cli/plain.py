@@ -218,7 +218,7 @@ class Plain:
         if self._config.as_json and seen is not None:
             self._out(ipc.encode(seen).decode().rstrip())
         else:
-            self._out(event_text.state_line(seen, self._dialogue.client))
+            self._out(event_text.state_line(seen, self._dialogue.number))
 
     def _show_help(self) -> None:
         tell = self._err if self._config.as_json else self._out

@@ -32,12 +32,12 @@ def report(dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool) -> Ex
 
     dialogue.wait_until(whole, SLOW_VALUES_WAIT_S)
     display.clear()
-    return show(dialogue.snapshot, dialogue.client, as_json=as_json, bridge=dialogue.bridge)
+    return show(dialogue.snapshot, dialogue.number, as_json=as_json, bridge=dialogue.bridge)
 
 
 def show(
     seen: ipc.Snapshot | None,
-    client: int,
+    number: int,
     *,
     as_json: bool,
     bridge: ipc.BridgeStatus | None = None,
@@ -56,16 +56,16 @@ def show(
     table = Table(box=box.SIMPLE, show_header=False, pad_edge=False)
     table.add_column(style="dim")
     table.add_column()
-    for name, value in rows(seen, client, bridge):
+    for name, value in rows(seen, number, bridge):
         table.add_row(name, value)
     Console(highlight=False, markup=False).print(table)
     return ExitCode.DONE
 
 
 def rows(
-    seen: ipc.Snapshot, client: int, bridge: ipc.BridgeStatus | None = None
+    seen: ipc.Snapshot, number: int, bridge: ipc.BridgeStatus | None = None
 ) -> list[tuple[str, str]]:
-    """What is shown to the operator `client`, top to bottom; unknown values are a dash.
+    """What is shown to operator `number`, top to bottom; unknown values are a dash.
 
     `bridge` has the vehicles of a bridge, of which `seen` is the first one, and its clients.
     """
@@ -78,7 +78,7 @@ def rows(
         ("vehicle", seen.vehicle),
         *([("also heard", ", ".join(others))] if others else []),
         ("state", f"{seen.state}, control {seen.control}"),
-        ("control", control_words(seen, client)),
+        ("control", control_words(seen, number)),
         ("severity", f"{seen.severity}{conditions}"),
         ("mode", f"{seen.mode or '-'}, {armed}, {seen.landed or '-'}"),
         ("position", f"{signed_enu(seen.pos_enu)} m, {_fixed(seen.position_age_s, 's', 2)} old"),

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -101,7 +102,7 @@ def _ctrl_c_waits() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-class EventReader:
+class EventReader(ABC):
     """What both ways share: a clock, a thread that reads, and the good-bye."""
 
     def __init__(self) -> None:
@@ -114,12 +115,12 @@ class EventReader:
         """The clock that time-outs of an operator's program are measured on."""
         return time.monotonic()
 
+    @abstractmethod
     def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:
         """Wait until the station says something, one of `also` is readable, or the time is over.
 
         The last event is a `StationEnded`; after it every poll returns it again.
         """
-        raise NotImplementedError
 
     def listen(self, on_event: Callable[[StationEvent], None]) -> None:
         """Call `on_event` for every event, in a thread, until the station or the way to it has

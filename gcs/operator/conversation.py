@@ -80,7 +80,7 @@ class Conversation:
         self.ended: StationEnded | None = None
 
     @property
-    def client(self) -> int:
+    def number(self) -> int:
         """The number that the station knows this operator by; 0 before it has said it."""
         return self.hello.client if self.hello else 0
 

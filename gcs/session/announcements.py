@@ -53,14 +53,17 @@ def requested(asked: Asked, request: Request) -> Log:
 def verdict(told: GiveVerdict, asked: Asked, name: str, sysid: int, now_ns: int) -> list[Effect]:
     """Accepted, refused or superseded; with the numbers it was decided on.  `name` is the
     operator's, if it is a MAVLink client: then whoever watches the bridge is told as well."""
+    code, sentence, zone = _reason(told.refusal)
     item = DecisionItem(
-        sysid,
-        told.request_id,
-        asked.source,
-        asked.word,
-        "verdict",
-        told.ruling.value,
-        *_reason(told.refusal),
+        vehicle=sysid,
+        request_id=told.request_id,
+        source=asked.source,
+        word=asked.word,
+        phase="verdict",
+        outcome=told.ruling.value,
+        code=code,
+        sentence=sentence,
+        zone=zone,
         goal=_point(told.goal_ned),
         numbers=dict(told.refusal.numbers if told.refusal else told.evidence),
     )
@@ -103,14 +106,14 @@ def stream_ended(source: str, sysid: int, code: str, sentence: str, samples: flo
 def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
     """How an accepted request ended."""
     item = DecisionItem(
-        sysid,
-        told.request_id,
-        asked.source,
-        asked.word,
-        "ending",
-        told.kind.value,
-        told.code.value if told.code else "",
-        told.sentence,
+        vehicle=sysid,
+        request_id=told.request_id,
+        source=asked.source,
+        word=asked.word,
+        phase="ending",
+        outcome=told.kind.value,
+        code=told.code.value if told.code else "",
+        sentence=told.sentence,
         zone="",
         goal=None,
         numbers={},
@@ -128,8 +131,19 @@ def _of_stream(
     zone: str,
     numbers: dict[str, float | None],
 ) -> DecisionItem:
+    """What becomes of a stream, which is no request: it has no number."""
     return DecisionItem(
-        sysid, 0, source, "stream", "stream", outcome, code, sentence, zone, None, numbers
+        vehicle=sysid,
+        request_id=0,
+        source=source,
+        word="stream",
+        phase="stream",
+        outcome=outcome,
+        code=code,
+        sentence=sentence,
+        zone=zone,
+        goal=None,
+        numbers=numbers,
     )
 
 
@@ -145,14 +159,14 @@ def _for_bridge(item: DecisionItem, operator: int, name: str, now_ns: int) -> li
     return [
         Emit(
             ipc.BridgeDecision(
-                now_ns,
-                operator,
-                name,
-                item.word,
-                item.outcome,
-                item.code,
-                item.sentence,
-                item.vehicle,
+                time_ns=now_ns,
+                client=operator,
+                name=name,
+                what=item.word,
+                outcome=item.outcome,
+                code=item.code,
+                sentence=item.sentence,
+                vehicle=item.vehicle,
             )
         )
     ]

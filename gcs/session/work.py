@@ -98,7 +98,7 @@ class AskMission(msgspec.Struct, frozen=True, gc=False):
 
 
 class AskOrbit(msgspec.Struct, frozen=True, gc=False):
-    """The request of the operator `operator` that was opened as `request_id`, for an orbit."""
+    """The request of an operator that was opened as `request_id`, for an orbit."""
 
     request_id: int
     ask: ipc.Ask
@@ -106,7 +106,7 @@ class AskOrbit(msgspec.Struct, frozen=True, gc=False):
 
 
 class OrbitSample(msgspec.Struct, frozen=True, gc=False):
-    """The next sample of the orbit that the operator `operator` has asked for; None: it is over."""
+    """The next sample of the orbit that an operator has asked for; None: it is over."""
 
     operator: int
     sample: ipc.Stream | None

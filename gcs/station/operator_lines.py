@@ -25,7 +25,7 @@ def line(
     command: ipc.Command,
     now_ns: int,
 ) -> ForOwner:
-    """One command of the operator `operator`; what is about no vehicle is the station's.
+    """One command of an operator; what is about no vehicle is the station's.
 
     A climb is held back for a moment after a MAVLink client has written how high one is, and an
     arming after one has set the mode of a mission.

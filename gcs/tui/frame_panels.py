@@ -45,10 +45,10 @@ def header(scene: Scene, columns: int) -> Text:
 def _operator(scene: Scene, columns: int) -> str:
     """Who is in control, with its program where there is room beside the size of the record."""
     operator = scene.snapshot.in_control if scene.snapshot else None
-    whole = operator_words(operator, scene.talk.client)
+    whole = operator_words(operator, scene.talk.number)
     if len(whole) + CONTROL_COLUMNS <= columns:
         return whole
-    return operator_words(operator, scene.talk.client, short=True)
+    return operator_words(operator, scene.talk.number, short=True)
 
 
 def _whole(age_s: float | None) -> str:

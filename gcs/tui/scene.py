@@ -62,7 +62,7 @@ class Scene:
     def in_control(self) -> bool:
         """Whether this operator may ask for everything, or would get control by asking."""
         operator = self.snapshot.in_control if self.snapshot else None
-        return operator is None or operator.client == self.talk.client
+        return operator is None or operator.client == self.talk.number
 
     @property
     def lost(self) -> bool:
@@ -164,7 +164,7 @@ class Scene:
         before."""
         if before is None:
             return
-        words = control_text.change_words(before.in_control, now.in_control, self.talk.client)
+        words = control_text.change_words(before.in_control, now.in_control, self.talk.number)
         if words:
             self.answer = Answer(words, TAKEN_OVER, now.time_ns)
 

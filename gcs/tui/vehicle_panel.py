@@ -32,23 +32,23 @@ def draw(scene: Scene) -> Text:
         panel.append("start one: vehicle-sim, gcs fly --sim\n", look.DIM)
         panel.append("or name its link: --link URL\n", look.DIM)
         return panel
-    for name, value, style in rows(seen, scene.talk.client, lost=scene.lost):
+    for name, value, style in rows(seen, scene.talk.number, lost=scene.lost):
         panel.append(f"{name:<5}", look.DIM)
         panel.append(value, style)
         panel.append("\n")
     return panel
 
 
-def rows(seen: ipc.Snapshot, client: int, *, lost: bool = False) -> list[tuple[str, str, str]]:
-    """Name, value, style, for the operator `client`.  Of a vehicle that is lost the ages are
+def rows(seen: ipc.Snapshot, number: int, *, lost: bool = False) -> list[tuple[str, str, str]]:
+    """Name, value, style, for operator `number`.  Of a vehicle that is lost the ages are
     bright and all else is dim."""
-    shown = _rows(msgspec.structs.replace(seen, rx_hz=0.0) if lost else seen, client)
+    shown = _rows(msgspec.structs.replace(seen, rx_hz=0.0) if lost else seen, number)
     if not lost:
         return shown
     return [(name, value, style if style == look.BAD else look.DIM) for name, value, style in shown]
 
 
-def _rows(seen: ipc.Snapshot, client: int) -> list[tuple[str, str, str]]:
+def _rows(seen: ipc.Snapshot, number: int) -> list[tuple[str, str, str]]:
     armed = {None: "arm?", True: "ARMED", False: "disarmed"}[seen.armed]
     speed = "-" if seen.v_enu is None else f"{math.hypot(*seen.v_enu):.1f} m/s"
     heading = "-" if seen.yaw_deg is None else f"{whole_degrees(seen.yaw_deg):03d}°"
@@ -57,7 +57,7 @@ def _rows(seen: ipc.Snapshot, client: int) -> list[tuple[str, str, str]]:
         ("mode", f"{seen.mode or '-'} {armed}", look.WARN if seen.armed else look.PLAIN),
         (
             "ctrl",
-            f"{control_words(seen, client, short=True)}, {seen.control} {seen.severity}",
+            f"{control_words(seen, number, short=True)}, {seen.control} {seen.severity}",
             look.SEVERITY.get(seen.severity, look.BAD),
         ),
         ("pos", signed_enu(seen.pos_enu), look.VEHICLE),

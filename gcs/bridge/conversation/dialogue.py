@@ -15,7 +15,7 @@ from typing import Final, TypeVar
 
 import msgspec
 
-from gcs import ipc
+from gcs import ipc, request_words
 from gcs.bridge.conversation.answers import (
     acknowledgement,
     item_acknowledgement,
@@ -40,7 +40,7 @@ one.  Anything else that was asked in between, by whomever, a refusal, or a stop
 from memory, and neither is what has ended otherwise: the vehicle may be flown otherwise by now.
 Nor is anything where a heartbeat has shown a change since: another mode, or that it is disarmed.  A
 repetition is told by the time because COMMAND_INT and items have no `confirmation` to count it."""
-STOPS: Final = frozenset({"abort", "hold", "land", "rtl", "disarm"})
+STOPS: Final = request_words.STOPS | {"disarm"}
 DECIDED_BY_GATE: Final = frozenset({"goto", "orbit", "stream_begin", "stream_end"})
 """Words that no command to the vehicle stands for: they are answered with the verdict."""
 SEEN_SOON: Final = frozenset({"arm", "disarm", "control", "resume"})
@@ -382,7 +382,7 @@ class Dialogue:
 
 
 def gates_line(event: ipc.EndingEvent) -> str:
-    """What all clients are told of the ending of somebody's request (`Turn.end`)."""
+    """What all clients are told of the ending of somebody's request (`StepContext.end`)."""
     return f"gate: {event.word}: {event.ended}: {event.sentence}"
 
 

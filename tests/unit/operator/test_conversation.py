@@ -70,8 +70,8 @@ OPERATION = ipc.Operation(4, GOTO, 1, "gcs fly", 0)
 @pytest.mark.parametrize(
     ("events", "kept"),
     [
-        ([], {"client": 0, "hello": None, "operations": None, "ended": None}),
-        ([HELLO, SEEN], {"client": 3, "hello": HELLO, "snapshot": SEEN}),
+        ([], {"number": 0, "hello": None, "operations": None, "ended": None}),
+        ([HELLO, SEEN], {"number": 3, "hello": HELLO, "snapshot": SEEN}),
         ([OPERATION], {"operations": None}),
         ([ipc.OperationList(1, []), OPERATION], {"operations": {4: OPERATION}}),
         ([SEEN], {"position_known": False, "can_be_judged": False}),

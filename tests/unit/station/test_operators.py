@@ -18,7 +18,7 @@ from gcs.session.inputs import (
 from tests.unit.station import told, wire
 from tests.unit.station.station import Script
 
-SECOND, THIRD = 2, 3
+SECOND = 2
 KEPT = StationConfig(keep=True)
 
 
