@@ -138,6 +138,16 @@ class ListOperations(msgspec.Struct, frozen=True, tag="list_operations", tag_fie
     id: int
 
 
+class Check(msgspec.Struct, frozen=True, tag="check", tag_field="type"):
+    """What would the gate say to this request now?  Any operator may ask; nothing is done.
+
+    Answered with `Checked`.  Only what the gate decides by itself can be checked so: goto, takeoff,
+    control, arm, land, rtl, hold, resume, photo, mode and others; not missions and orbits.
+    """
+
+    asked: Ask  # its `id` comes back
+
+
 class WatchTopics(msgspec.Struct, frozen=True, tag="watch_topics", tag_field="type"):
     """From now on tell me of everything that goes into the record, as the topics of its file.
 
@@ -147,7 +157,7 @@ class WatchTopics(msgspec.Struct, frozen=True, tag="watch_topics", tag_field="ty
 
 
 Command: TypeAlias = (
-    Ask | Stream | Pending | Leave | Join | Subscribe | ListOperations | WatchTopics
+    Ask | Stream | Pending | Leave | Join | Subscribe | ListOperations | Check | WatchTopics
 )
 
 
@@ -200,6 +210,26 @@ class VerdictEvent(msgspec.Struct, frozen=True, tag="verdict", tag_field="type")
     numbers: dict[str, float | None] = {}
     goal_enu: Maybe3 | None = None
     operation: int = 0  # the station's own number of this request
+
+
+class Checked(msgspec.Struct, frozen=True, tag="checked", tag_field="type"):
+    """The answer to `Check`: the verdict that the request would get now.
+
+    A goto is also judged by itself, as from where the vehicle will hover: `goal_code` is empty
+    where it clears or cannot be judged yet.  So a goal can be looked at while the vehicle stands on
+    the ground or flies to another one.
+    """
+
+    id: int
+    word: str
+    outcome: str  # accepted | refused | waits: it is decided later, as a goto during a climb
+    code: str = ""
+    sentence: str = ""
+    zone: str = ""
+    numbers: dict[str, float | None] = {}
+    goal_code: str = ""
+    goal_sentence: str = ""
+    goal_zone: str = ""
 
 
 class StreamVerdictEvent(msgspec.Struct, frozen=True, tag="stream_verdict", tag_field="type"):
@@ -456,6 +486,7 @@ Event: TypeAlias = (
     | Operators
     | Fences
     | VerdictEvent
+    | Checked
     | StreamVerdictEvent
     | OrbitEvent
     | EndingEvent

@@ -76,6 +76,7 @@ class Conversation:
         self.stream_verdict: ipc.StreamVerdictEvent | None = None
         self.operations: dict[int, ipc.Operation] | None = None
         """Of all operators; None before they were asked for."""
+        self.checked: ipc.Checked | None = None
         self.trouble: ipc.Trouble | None = None
         self.ended: StationEnded | None = None
 
@@ -105,6 +106,11 @@ class Conversation:
         self._open[self._last_id] = tracked
         return tracked
 
+    def check(self, request: ipc.Ask) -> ipc.Check:
+        """Number a request that is only to be judged: what is to be sent."""
+        self._last_id += 1
+        return ipc.Check(msgspec.structs.replace(request, id=self._last_id))
+
     def told(self, event: StationEvent) -> TrackedRequest | None:
         """Note what the station says; the request that it answers, if it is one of this talk."""
         match event:
@@ -120,6 +126,8 @@ class Conversation:
                 self.operators = event
             case ipc.StreamVerdictEvent():
                 self.stream_verdict = event
+            case ipc.Checked():
+                self.checked = event
             case ipc.OperationList(_, operations):
                 self.operations = {each.id: each for each in operations}
             case ipc.Operation() if self.operations is not None:

@@ -355,6 +355,22 @@ class Station:
         left_s = None if deadline_s is None else max(0.0, deadline_s - time.monotonic())
         return operation.wait(left_s)
 
+    def check(self, request: ipc.Ask, timeout_s: float = ANSWER_WAIT_S) -> ipc.Checked:
+        """What the gate would say to a request now; nothing is done.  Raises Disconnected."""
+        with self._changed:
+            sent = self.talk.check(request)
+        self.tell(sent)
+        number_sent = sent.asked.id
+        self.wait_until(lambda: self._checked(number_sent) is not None, timeout_s)
+        answer = self._checked(number_sent)
+        if answer is None:
+            raise Disconnected("the station tells nothing")
+        return answer
+
+    def _checked(self, number_sent: int) -> ipc.Checked | None:
+        answer = self.talk.checked
+        return answer if answer is not None and answer.id == number_sent else None
+
     def tell(self, command: ipc.Command) -> None:
         """Send what has no answer of its own.  Raises Disconnected."""
         if not self._connection.send(command):

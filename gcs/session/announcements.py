@@ -85,6 +85,27 @@ def verdict(told: GiveVerdict, asked: Asked, name: str, sysid: int, now_ns: int)
     ]
 
 
+def checked(
+    asked: ipc.Ask, told: effects.Verdict | Refusal | None, goal: Refusal | None = None
+) -> ipc.Checked:
+    """What a request would be answered with now; `goal` refuses what it is to fly to."""
+    verdict = told if isinstance(told, effects.Verdict) else None
+    refusal = told if isinstance(told, Refusal) else verdict.refusal if verdict else None
+    outcome = "refused" if refusal else "accepted" if verdict else "waits"
+    return ipc.Checked(
+        asked.id,
+        asked.word,
+        outcome,
+        code=refusal.code.value if refusal else "",
+        sentence=refusal.sentence if refusal else "",
+        zone=refusal.zone if refusal else "",
+        numbers=dict(refusal.numbers if refusal else verdict.evidence if verdict else ()),
+        goal_code=goal.code.value if goal else "",
+        goal_sentence=goal.sentence if goal else "",
+        goal_zone=goal.zone if goal else "",
+    )
+
+
 def stream_verdict(
     told: effects.StreamVerdict, operator: int, name: str, sysid: int, now_ns: int
 ) -> list[Effect]:

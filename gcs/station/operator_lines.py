@@ -9,8 +9,14 @@ import msgspec
 from gcs import ipc
 from gcs.bridge.bridge import Bridge
 from gcs.bridge.judge.climbs import HEIGHT_WRITTEN
+from gcs.gate.machine.could import why_not_once_hovering
+from gcs.gate.requests import GoTo
+from gcs.protocol.autopilot import GENERIC
 from gcs.protocol.effects import Address
-from gcs.request_words import STOPS
+from gcs.request_words import STOPS, BadAskError, Doer, doer_of
+from gcs.session import announcements
+from gcs.session.effects import Emit
+from gcs.session.requests import request_of, source_of
 from gcs.session.work import STATION, ForOwner, Work
 from gcs.station.operators import Operators
 from gcs.station.vehicles import Vehicles
@@ -30,6 +36,9 @@ def line(
     A climb is held back for a moment after a MAVLink client has written how high one is, and an
     arming after one has set the mode of a mission.
     """
+    if isinstance(command, ipc.Check):
+        answer = _checked(operators, vehicles, bridge, operator, command.asked, now_ns)
+        return ForOwner(STATION, (Emit(answer, operator),))
     if not isinstance(command, ipc.Ask | ipc.Stream):
         return ForOwner(STATION, tuple(operators.line(operator, command, None, None, now_ns)))
     work = [
@@ -64,6 +73,35 @@ def _asked(
         return operators.line(operator, command, autopilot, refusal, now_ns)
     told = operators.line(operator, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)
     return [held, *told]
+
+
+def _checked(
+    operators: Operators,
+    vehicles: Vehicles,
+    bridge: Bridge,
+    operator: int,
+    ask: ipc.Ask,
+    now_ns: int,
+) -> ipc.Checked:
+    """The verdict that a request would get now; nothing is opened, recorded or sent for it."""
+    owner = vehicles.owner_for(operators.vehicle_of(ask))
+    autopilot, no_vehicle = vehicles.known(owner, now_ns)
+    refusal = operators.refusal(operator, ask) or no_vehicle
+    if refusal is None and owner != STATION:
+        refusal = bridge.armings.why_not(ask, vehicles.of_owner(owner).sysid)
+    if refusal is not None or owner == STATION:
+        return announcements.checked(ask, refusal)
+    if doer_of(ask.word) is not Doer.GATE:
+        return ipc.Checked(ask.id, ask.word, "refused", "BAD_REQUEST", "only requests of the gate")
+    try:
+        request = request_of(ask, autopilot or GENERIC)
+    except BadAskError as error:
+        return ipc.Checked(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
+    gate = vehicles.of_owner(owner).gate
+    goal = None
+    if isinstance(request, GoTo):
+        goal = why_not_once_hovering(gate.memory, request.goal_ned, request.yaw_rad)
+    return announcements.checked(ask, gate.would(request, source_of(operator), now_ns), goal)
 
 
 def _for_each(

@@ -158,10 +158,16 @@ class Operators:
                 return [*self._subscriptions.subscribe(operator, names, now_ns)]
             case ipc.ListOperations(number):
                 return [Emit(ipc.OperationList(number, self._operations.listed()), operator)]
+            case ipc.Check():
+                return []  # `operator_lines.py` answers it: no part of an operator's is asked
             case ipc.WatchTopics():
                 return [ShowTopics(operator)]
             case ipc.Join():
                 return [Emit(ipc.Trouble("this connection has joined already"), operator)]
+
+    def refusal(self, operator: int, ask: ipc.Ask) -> Refusal | None:
+        """Why this operator may not ask for that now."""
+        return self._control.refusal(operator, ask)
 
     def _ask(
         self,

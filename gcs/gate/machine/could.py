@@ -67,7 +67,23 @@ def why_not_go_to(memory: Memory, goal_ned: Vec3, yaw_rad: float | None) -> Refu
 
     Changes nothing.  The vehicle is taken to be at rest: one that moves is refused no less.
     """
-    if memory.verifier is None or memory.pos_ned is None:
+    return None if memory.pos_ned is None else _why_not(memory, goal_ned, yaw_rad, memory.pos_ned)
+
+
+def why_not_once_hovering(memory: Memory, goal_ned: Vec3, yaw_rad: float | None) -> Refusal | None:
+    """As `why_not_go_to`; a vehicle on the ground is taken to have climbed to the goal's height."""
+    if memory.pos_ned is None:
         return None
-    judged = memory.verifier.goal(goal_ned, yaw_rad, memory.pos_ned, AT_REST)
+    north_m, east_m, down_m = memory.pos_ned
+    if memory.on_ground:
+        down_m = min(down_m, goal_ned[2])
+    return _why_not(memory, goal_ned, yaw_rad, (north_m, east_m, down_m))
+
+
+def _why_not(
+    memory: Memory, goal_ned: Vec3, yaw_rad: float | None, from_ned: Vec3
+) -> Refusal | None:
+    if memory.verifier is None:
+        return None
+    judged = memory.verifier.goal(goal_ned, yaw_rad, from_ned, AT_REST)
     return judged if isinstance(judged, Refusal) else None

@@ -24,6 +24,7 @@ from gcs.gate.effects import (
     SendCommand,
     SendSetpoint,
     Transition,
+    Verdict,
 )
 from gcs.gate.inputs import ConditionChanged, Input, OperatorLost, Requested, StreamSeen, Tick
 from gcs.gate.machine.events import Event
@@ -42,6 +43,7 @@ from gcs.gate.machine.step_context import (
 from gcs.gate.machine.table import STREAMS, TABLE, Streams, Table
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
+from gcs.gate.requests import Request
 from gcs.gate.states import Control, FlightMode, LandedState, State
 
 MOTION: Final = frozenset(CommandKind) - {
@@ -65,6 +67,9 @@ MUST: Final[Mapping[Severity, Event]] = MappingProxyType(
 
 GOALS_WAIT_IN: Final = frozenset({State.TAKING_OFF, State.HOVERING, State.VERIFYING, State.MOVING})
 """Where a go-to may wait for its tick; one that waits when another state is entered is refused."""
+
+TRIAL: Final = -1
+"""The number of a request that is only tried: no real one has it."""
 
 
 class ImpossibleError(Exception):
@@ -200,6 +205,19 @@ class Gate:
         if isinstance(given, Tick):
             self._tick()
         return [self._permitted(draft) for draft in step.out]
+
+    def would(self, request: Request, source: str, now_ns: int) -> Verdict | None:
+        """The verdict that a request of `source` would get now; None where it would have to wait
+        for one.
+
+        A copy of the gate is asked, through the same table, and forgotten: nothing is changed, and
+        nothing of it is sent.
+        """
+        trial = Gate.resumed(self._step.policy, self.memory, now_ns, self._table)
+        asked = Requested(TRIAL, source, request)
+        effects = [*trial.handle(asked, now_ns), *trial.handle(Tick(0), now_ns)]
+        verdicts = (each for each in effects if isinstance(each, Verdict))
+        return next((each for each in verdicts if each.request_id == TRIAL), None)
 
     def _check_ages(self) -> None:
         """Handle what has become too old, before anything is decided on it."""

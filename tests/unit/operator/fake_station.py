@@ -82,6 +82,11 @@ class FakeStation:
                 return self._asked(command, now_s)
             case ipc.Stream(v_enu=v_enu):
                 return self._streamed(v_enu)
+            case ipc.Check(asked):
+                east, north, up = (metres or 0.0 for metres in asked.goal_enu or (0.0, 0.0, 0.0))
+                code, sentence = self.refusals.get((east, north, up), ("", ""))
+                outcome = "refused" if code else "accepted"
+                return [ipc.Checked(asked.id, asked.word, outcome, code, sentence)]
             case ipc.Join() | ipc.Subscribe() | ipc.ListOperations() | ipc.WatchTopics():
                 return []
 

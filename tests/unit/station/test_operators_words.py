@@ -41,6 +41,7 @@ commands = st.one_of(
     st.builds(ipc.Subscribe, st.lists(st.one_of(st.just("HEARTBEAT"), st.text()))),
     st.builds(ipc.ListOperations, st.integers()),
     st.builds(ipc.WatchTopics),
+    st.builds(ipc.Check, asks),
     st.builds(ipc.Join, st.text()),
     st.builds(
         ipc.Stream,
@@ -92,6 +93,7 @@ def test_every_kind_of_command_is_tried() -> None:
         ipc.Stream,
         ipc.Subscribe,
         ipc.ListOperations,
+        ipc.Check,
         ipc.Join,
         ipc.Pending,
         ipc.WatchTopics,
