@@ -184,15 +184,21 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
         "the guard before it left the verifier's refusal, which has this code, and that one is "
         "given"
     ): (
-        "TABLE GROUNDED / return, branch 5: refused RTL_BLOCKED -> refused BUSY",
-        "TABLE GROUNDED / return, branch 6: refused RTL_BLOCKED -> refused BUSY",
-        "TABLE TAKING_OFF / return and 7 more, branch 4: refused RTL_BLOCKED -> refused BUSY",
-        "TABLE TAKING_OFF / return and 7 more, branch 5: refused RTL_BLOCKED -> refused BUSY",
-        "TABLE LANDING / return, branch 4: refused RTL_BLOCKED -> refused BUSY",
+        "TABLE GROUNDED / return, branch 5: refused RTL_BLOCKED -> refused CANNOT_STOP",
+        "TABLE GROUNDED / return, branch 6: refused RTL_BLOCKED -> refused CANNOT_STOP",
+        (
+            "TABLE TAKING_OFF / return and 8 more, branch 4: refused RTL_BLOCKED -> refused "
+            "CANNOT_STOP"
+        ),
+        (
+            "TABLE TAKING_OFF / return and 8 more, branch 5: refused RTL_BLOCKED -> refused "
+            "CANNOT_STOP"
+        ),
+        "TABLE LANDING / return, branch 4: refused RTL_BLOCKED -> refused CANNOT_STOP",
     ),
     "in GROUNDED there is no control to let go, and its commands end with the request": (
         "TABLE GROUNDED / abort, branch 3: do let control go -> do nothing",
-        "TABLE GROUNDED / airborne, branch 6: do let control go -> do nothing",
+        "TABLE GROUNDED / airborne, branch 10: do let control go -> do nothing",
     ),
     "it is in GROUNDED already": ("TABLE GROUNDED / abort, branch 3: -> GROUNDED -> -> stay",),
     "a grace that is over is a grace": (
@@ -201,8 +207,9 @@ _STATE_MACHINE: Final[Mapping[str, tuple[str, ...]]] = {
     "the next action, to forget what was interrupted, lets control go as well": (
         "TABLE STALE / guided mode and 4 more, branch 4: do let control go -> do nothing",
     ),
-    "`at_height` asks itself whether it flies": (
-        "TABLE TAKING_OFF / tick, branch 1: if it flies -> always",
+    "a goal is flown to, and a climb judged, by a position that has come": (
+        "gcs/gate/machine/progress.py within_arrival: False -> True",
+        "gcs/gate/machine/progress.py nearly_at_height: False -> True",
     ),
 }
 """Keys of the mutants by the reason: of the gate's state machine and its table."""

@@ -26,6 +26,7 @@ from gcs.gate.effects import (
 from gcs.gate.inputs import (
     CommandEnded,
     ConditionChanged,
+    HeartbeatSeen,
     HomeSeen,
     MessageSeen,
     MissionLoaded,
@@ -314,6 +315,9 @@ class Flight:
                 modes = [FlightMode[word] for word in words if word.isupper()]
                 armed = {"armed": True, "disarmed": False}.get(words[-1]) if words else None
                 script.heartbeat(*modes, armed=armed)
+            case ["fails-safe", mode]:
+                script.mode = FlightMode[mode]
+                script.feed(HeartbeatSeen(script.armed, script.mode, mode, failsafe=True))
             case ["is", landed]:
                 script.land_state(LandedState[landed])
             case ["at", east, north, up]:

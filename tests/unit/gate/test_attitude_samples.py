@@ -331,6 +331,14 @@ def test_the_property_notices_a_vehicle_beyond_its_promise(
     assert rests_at((0.0, 0.0, 0.0), [level], liar)[2] < highest, why
 
 
+def test_a_sample_may_add_its_acceleration_for_as_long_as_it_counts() -> None:
+    sample = StreamSample(v_ned=(0.0, 4.0, 0.0), a_ned=(1.0, -1.0, 0.5))
+    found = velocities(sample, (2.0, 0.0, 0.0), 0.125, (), PX4, RULES)
+    gained = sample_counts_s(0.125, RULES) + PX4.react_s
+    assert (2.0 + gained, -gained, 0.5 * gained) in found
+    assert (gained, 4.0 - gained, 0.5 * gained) in found
+
+
 @pytest.mark.parametrize(
     ("autopilot", "deadman_s", "ahead_m", "beside_m", "above_m", "below_m"),
     [

@@ -49,6 +49,11 @@ HOLDING; shows HOLD; wait 12 | shows {GUIDED, TAKEOFF, MISSION, OTHER}
 {in HOVERING, HOLDING; shows HOLD; wait 12} | shows <RETURN, LAND>
     | <RETURNING, LANDING> NONE; silent
 LANDING | shows RETURN | RETURNING NONE, it taken over MODE_CHANGED; silent
+# A failsafe of the vehicle's own that takes over is named; what ends otherwise is not laid on it.
+{TAKING_OFF, MOVING, TAKING_PICTURE}
+    | fails-safe RETURN | RETURNING NONE, it taken over VEHICLE_FAILSAFE;
+    ... says "a failsafe of the vehicle's own took over: RETURN"
+MOVING; fails-safe GUIDED | abort | HOLDING OURS, sends HOLD, it aborted OPERATOR, abort accepted
 # A mission may end in a return or a landing, and a return ends in a landing.
 FLYING_MISSION | shows <RETURN, LAND> | <RETURNING, LANDING> OURS
 RETURNING      | shows LAND           | LANDING OURS

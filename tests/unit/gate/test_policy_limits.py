@@ -102,6 +102,12 @@ def test_no_number_is_larger_than_a_hundred_thousand(key: str) -> None:
     assert error(f"{key} = {MOST + 1}").key == key
 
 
+@pytest.mark.parametrize(("key", "most"), [("separation.within_s", 60.0)])
+def test_the_greatest_value(key: str, most: float) -> None:
+    assert value(parse_policy(f"{key} = {most}", "my.toml"), key) == most
+    assert error(f"{key} = {most + 0.001}").key == key
+
+
 def test_an_arrival_s_radius_grows_to_a_hundredth_of_a_metre_at_least() -> None:
     policy = parse_policy("arrival.radius_m = 0.01\narrival.max_radius_m = 0.01", "my.toml")
     assert (policy.arrival.radius_m, policy.arrival.max_radius_m) == (0.01, 0.01)

@@ -1,4 +1,4 @@
-"""Whether a vehicle that is held would be flown under control again, asked before it is held."""
+"""Whether a vehicle may arm, and whether one that is held would be flown on: asked before."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ import pytest
 
 from gcs.gate.condition import Condition
 from gcs.gate.inputs import ConditionChanged
-from gcs.gate.machine.could import why_not_resume
+from gcs.gate.machine.could import why_not_arm, why_not_resume
 from gcs.gate.refusal import Code
 from gcs.gate.requests import Hold, Resume
 from gcs.gate.states import State
+from tests.unit.gate.flight_words import Flight
 from tests.unit.gate.script import Script, policy
 from tests.unit.gate.situations import flight
 
@@ -63,3 +64,20 @@ def test_being_outside_does_not_where_the_way_back_clears() -> None:
     assert why(script) is None
     script.feed(ConditionChanged(Condition.ESTIMATOR_UNRELIABLE, True))
     assert why(script) is Code.SEVERITY
+
+
+@pytest.mark.parametrize(
+    ("situation", "code"),
+    [
+        ("connected", None),
+        ("connected; raised BATTERY_CRITICAL", Code.SEVERITY),
+        ("connected; no positions; wait 2", Code.STALE),
+        ("in HOVERING", Code.ALREADY_FLYING),
+    ],
+)
+def test_it_may_arm_where_the_gate_would_arm_it(situation: str, code: Code | None) -> None:
+    script = Flight.begun(situation, {}).script
+    before = deepcopy(script.gate.memory)
+    refusal = why_not_arm(script.policy, script.gate.memory, script.now_ns)
+    assert script.gate.memory == before
+    assert (None if refusal is None else refusal.code) is code
