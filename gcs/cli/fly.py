@@ -143,7 +143,7 @@ def _mission(file: str) -> str:
     Raises ExitError with BAD_FILE.
     """
     from gcs import resources
-    from gcs.cli.mission.mission import read_plan
+    from gcs.cli.mission.files import read_plan
 
     read_plan(file, None)
     return str(resources.find(file))

@@ -61,7 +61,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Files": {
         "mission": Entry(
             "gcs.cli.mission.mission:mission",
-            "Mission files: check, show, upload, download, fly, set-current, clear.",
+            "Mission files: check, show, convert, upload, download, fly, set-current, clear.",
             more="gcs.cli.mission.live:COMMANDS",
         ),
         "key": Entry("gcs.cli.key:key", "Signing keys: new, show, install on a vehicle, remove."),

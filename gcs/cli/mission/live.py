@@ -6,6 +6,7 @@ from typing import TypedDict, Unpack
 
 import click
 
+from gcs.cli.mission.files import MISSION_FILE
 from gcs.cli.options import (
     AS_JSON,
     LINK,
@@ -54,7 +55,7 @@ class ToVehicle(TypedDict):
 
 
 @click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
-@click.argument("file")
+@click.argument("file", type=MISSION_FILE)
 @with_options(*LINK_OPTIONS)
 def upload(
     file: str,
@@ -82,7 +83,7 @@ def download(
 ) -> None:
     """Read the mission on board into FILE, mission.plan if none is named.
 
-    The suffix chooses the format: .plan, .waypoints or .txt.
+    The suffix chooses the format: .plan, .waypoints, .txt or .csv.
     """
     if file is not None and output is not None:
         raise ExitError(ExitCode.USAGE, f"one file, not two: {file} and {output}")
@@ -92,7 +93,7 @@ def download(
 
 
 @click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
-@click.argument("file")
+@click.argument("file", type=MISSION_FILE)
 @with_options(*LINK_OPTIONS)
 def fly(
     file: str,
@@ -153,7 +154,7 @@ def _readable(file: str) -> str:
     started.  Raises ExitError with BAD_FILE.
     """
     from gcs import resources
-    from gcs.cli.mission.mission import read_plan
+    from gcs.cli.mission.files import read_plan
 
     read_plan(file, None)
     return str(resources.find(file))

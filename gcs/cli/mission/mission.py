@@ -7,50 +7,22 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli.mission.convert import convert
+from gcs.cli.mission.files import AUTOPILOT, HOME, MISSION_FILE, read_plan
 from gcs.cli.options import AS_JSON, POLICY, with_options
 from gcs.exit_codes import ExitCode
-from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.plan.items import Flown
-    from gcs.plan.model import AutopilotName, Geodetic, Plan
-
-AUTOPILOT = click.Option(
-    ["--autopilot"],
-    type=click.Choice(["px4", "ardupilot"]),
-    help="Whose rules to read it by.  [default: what the file says, else px4]",
-)
-
-
-def _parse_home(ctx: click.Context, param: click.Parameter, value: str | None) -> Geodetic | None:
-    """`LAT,LON,ALT`: degrees, and metres above mean sea level."""
-    from gcs.plan.model import Geodetic
-
-    if value is None:
-        return None
-    try:
-        lat_deg, lon_deg, alt_amsl_m = (float(part) for part in value.split(","))
-    except ValueError:
-        raise click.BadParameter(f"{value!r} is not three numbers LAT,LON,ALT") from None
-    if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0 and abs(alt_amsl_m) <= 1.0e4):
-        raise click.BadParameter(f"{value!r} is no place on Earth")
-    return Geodetic(lat_deg, lon_deg, alt_amsl_m)
-
-
-HOME = click.Option(
-    ["--home"],
-    callback=_parse_home,
-    metavar="LAT,LON,ALT",
-    help="Where it will take off.  [default: the file's home, else the simulated vehicle's]",
-)
+    from gcs.plan.model import AutopilotName, Geodetic
 
 
 @click.group()
 def mission() -> None:
     """Mission files: check and show them, and fly them through the gate.
 
-    FILE is a QGroundControl .plan, a QGC WPL 110 table or a mission in TOML; a shipped mission
-    is found by its name (`gcs mission show demo`).
+    FILE is a QGroundControl .plan, a QGC WPL 110 table, a mission in our TOML or CSV, KML or GPX; a
+    shipped mission is found by its name (`gcs mission show demo`).
     """
 
 
@@ -58,7 +30,7 @@ def mission() -> None:
     epilog="Example: gcs mission check survey.plan --policy default\n\n"
     "Exit codes: 0 it may be flown, 4 the file is wrong, 6 the fence refuses it."
 )
-@click.argument("file")
+@click.argument("file", type=MISSION_FILE)
 @with_options(AUTOPILOT, POLICY, HOME, AS_JSON)
 def check(
     file: str,
@@ -77,7 +49,7 @@ def check(
 
 
 @mission.command(epilog="Example: gcs mission show demo")
-@click.argument("file")
+@click.argument("file", type=MISSION_FILE)
 @with_options(AUTOPILOT, AS_JSON)
 def show(file: str, autopilot: AutopilotName | None, as_json: bool) -> int:
     """Print what a mission file holds, item by item."""
@@ -119,21 +91,4 @@ def _grouped(cells: tuple[Flown, ...]) -> Iterator[tuple[str, Flown]]:
         yield ("all" if len(names) == len(cells) else ", ".join(names)), flown
 
 
-def read_plan(file: str, autopilot: AutopilotName | None) -> Plan:
-    """The plan behind a path or the name of a shipped mission.
-
-    Raises ExitError with BAD_FILE.
-    """
-    from gcs import resources
-    from gcs.plan.errors import PlanError
-    from gcs.plan.formats.reader import read
-
-    try:
-        path = resources.find(file)
-        return read(str(path), path.read_bytes(), autopilot)
-    except resources.MissionNotFoundError as error:
-        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
-    except OSError as error:
-        raise ExitError(ExitCode.BAD_FILE, f"{file}: {error.strerror}") from None
-    except PlanError as error:
-        raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
+mission.add_command(convert)

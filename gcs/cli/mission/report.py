@@ -44,7 +44,7 @@ def check_lines(checked: Checked) -> Iterator[str]:
     from_policy = _zones(len(checked.policy.fence))
     yield f"fence: {from_policy} from the policy, {len(plan.fence.zones)} from the file"
     for finding in checked.findings:
-        yield from _finding_lines(plan, finding)
+        yield from finding_lines(plan, finding)
     if checked.verification is None:
         yield f"verdict: {_summary(checked)}"
         return
@@ -65,7 +65,7 @@ def _zones(count: int) -> str:
     return f"{count} zone" if count == 1 else f"{count} zones"
 
 
-def _finding_lines(plan: Plan, finding: Finding) -> Iterator[str]:
+def finding_lines(plan: Plan, finding: Finding) -> Iterator[str]:
     place = f"{plan.source}:{finding.where}" if finding.where else plan.source
     yield f"{_LEVEL_WORDS[finding.level]}: {place}: {finding.item}: {finding.what}"
     if finding.hint:
@@ -128,7 +128,7 @@ def check_json(checked: Checked) -> str:
         "policy": checked.policy.name,
         "home": _home_json(checked.home),
         "items": len(checked.plan.items),
-        "findings": [_finding_json(finding) for finding in checked.findings],
+        "findings": [finding_json(finding) for finding in checked.findings],
         "legs": legs,
         "problems": problems,
         "returns_blocked_after": (
@@ -150,7 +150,7 @@ def _home_json(home: Geodetic | None) -> list[float | None] | None:
     return None if home is None else [home.lat_deg, home.lon_deg, home.alt_amsl_m]
 
 
-def _finding_json(finding: Finding) -> dict[str, str | int | None]:
+def finding_json(finding: Finding) -> dict[str, str | int | None]:
     return {
         "level": _LEVEL_WORDS[finding.level],
         "where": finding.where,
@@ -226,7 +226,7 @@ def _facts(plan: Plan) -> Iterator[str]:
             f"{point.alt_above_home_m:g} m above home"
         )
     for finding in plan.notes:
-        yield from _finding_lines(plan, finding)
+        yield from finding_lines(plan, finding)
 
 
 def _position(item: Item) -> str:
@@ -294,7 +294,7 @@ def plan_json(plan: Plan) -> str:
             for zone in plan.fence.zones
         ],
         "rally": [[r.lat_deg, r.lon_deg, r.alt_above_home_m] for r in plan.rally],
-        "notes": [_finding_json(finding) for finding in plan.notes],
+        "notes": [finding_json(finding) for finding in plan.notes],
     }
     return json.dumps(document, indent=2, allow_nan=False)
 

@@ -27,6 +27,7 @@ from gcs.steps import Steps
 from gcs.wire.ids import MavType
 
 FIRMWARES: dict[int, AutopilotName] = {12: "px4", 3: "ardupilot"}
+_ANY_FIRMWARE = 0
 _MULTIROTORS = frozenset(
     {
         MavType.GENERIC,
@@ -93,7 +94,7 @@ def _read_firmware(mission: Node, notes: list[Finding]) -> AutopilotName | None:
     if node is None:
         return None
     firmware = FIRMWARES.get(node.integer())
-    if firmware is None:
+    if firmware is None and node.integer() != _ANY_FIRMWARE:
         what = f"{node.integer()} is neither PX4 (12) nor ArduPilot (3)"
         notes.append(Finding(Level.WARNING, node.path, "firmwareType", what))
     return firmware

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
 
 from gcs.plan import commands
-from gcs.plan.errors import Finding, Level, PlanError
+from gcs.plan.errors import PlanError
 from gcs.plan.formats.json_cursor import Json
+from gcs.plan.formats.losses import Losses, Written
 from gcs.plan.model import Circle, EastNorth, Fence, Frame, Geodetic, Item, LatLon, Local, Plan
 
 _FIRMWARE_NUMBER = {"px4": 12, "ardupilot": 3, None: 0}
@@ -16,17 +16,10 @@ _ALTITUDE_MODE = {Frame.HOME: 1, Frame.AMSL: 2, Frame.TERRAIN: 4}
 _QUADROTOR = 2
 
 
-@dataclass(frozen=True, slots=True)
-class Written:
-    """A file's bytes, and what of the plan is not in them."""
-
-    data: bytes
-    lost: tuple[Finding, ...] = ()
-
-
 def write_plan(plan: Plan) -> Written:
     """Raises PlanError for a plan in a local frame: place it first (`georeference`)."""
-    lost: list[Finding] = []
+    losses = Losses(plan)
+    losses.heights_of_zones()
     home = plan.home or Geodetic(0.0, 0.0, 0.0)
     mission: dict[str, Json] = {
         "cruiseSpeed": plan.cruise_speed_m_s,
@@ -41,14 +34,14 @@ def write_plan(plan: Plan) -> Written:
     points: list[Json] = [[r.lat_deg, r.lon_deg, r.alt_above_home_m] for r in plan.rally]
     document: dict[str, Json] = {
         "fileType": "Plan",
-        "geoFence": _fence(plan, plan.fence, lost),
+        "geoFence": _fence(plan, plan.fence),
         "groundStation": "mavgate",
         "mission": mission,
         "rallyPoints": {"points": points, "version": 2},
         "version": 1,
     }
     text = json.dumps(document, indent=4, allow_nan=False)
-    return Written(text.encode() + b"\n", tuple(lost))
+    return Written(text.encode() + b"\n", losses.found())
 
 
 def local_refused(plan: Plan, where: str, item: str) -> PlanError:
@@ -57,7 +50,7 @@ def local_refused(plan: Plan, where: str, item: str) -> PlanError:
         where,
         item,
         "is in metres from the take-off point, which this format cannot say",
-        hint="give the place of home, so that it can be placed on Earth",
+        hint="give the place of home (--home LAT,LON,ALT), so that it can be placed on Earth",
     )
 
 
@@ -91,13 +84,10 @@ def _item(plan: Plan, item: Item) -> Json:
     return entry
 
 
-def _fence(plan: Plan, fence: Fence, lost: list[Finding]) -> Json:
+def _fence(plan: Plan, fence: Fence) -> Json:
     polygons: list[Json] = []
     circles: list[Json] = []
     for zone in fence.zones:
-        if zone.floor_above_home_m is not None or zone.ceiling_above_home_m is not None:
-            what = "its floor and ceiling are not kept by a .plan"
-            lost.append(Finding(Level.WARNING, zone.where, f"fence zone {zone.name}", what))
         entry: dict[str, Json] = {"inclusion": zone.inclusion, "version": 1}
         if isinstance(zone.shape, Circle):
             centre = _lat_lon(plan, zone.where, zone.shape.centre)

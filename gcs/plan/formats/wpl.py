@@ -2,26 +2,46 @@
 
 ArduPilot files carry home as item 0, PX4 files do not.  In this table DO_JUMP names a seq; in a
 `Plan` it names a do_jump_id, which counts from 1 over the items that are flown.
+
+Two older forms are read too, as pymavlink's `mavwp.py` does: `QGC WPL 100` has other columns and
+other numbers of commands, `QGC WPL PB 110` has the rows as protobuf text (`wpl_pb.py`).
 """
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from gcs.plan.build import item_from_numbers
 from gcs.plan.errors import Finding, Level, PlanError
 from gcs.plan.formats.fence_items import split_fence
+from gcs.plan.formats.text_lines import content_lines, decimal_hint, read_number
+from gcs.plan.formats.wpl_pb import waypoint_blocks
 from gcs.plan.model import AutopilotName, Frame, Geodetic, Geographic, Item, Plan
 from gcs.steps import Steps
 from gcs.wire.ids import Cmd
 
 HEADER = "QGC WPL 110"
+_HEADER_100 = "QGC WPL 100"
+_HEADER_PB = "QGC WPL PB 110"
 _WHOLE = ("seq", "current", "frame", "command", "autocontinue")
-_FIELDS = (*_WHOLE[:4], "p1", "p2", "p3", "p4", "lat", "lon", "alt", "autocontinue")
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_NUMBERS = ("p1", "p2", "p3", "p4", "lat", "lon", "alt")
+_COLUMNS = {
+    HEADER: (*_WHOLE[:4], *_NUMBERS, "autocontinue"),
+    _HEADER_100: (
+        *("seq", "frame", "command", "p3", "p4", "p1", "p2", "current"),
+        *("lon", "lat", "alt", "unused", "autocontinue"),
+    ),
+}
+_COMMANDS_100 = {
+    2: Cmd.NAV_TAKEOFF,
+    3: Cmd.NAV_RETURN_TO_LAUNCH,
+    4: Cmd.NAV_LAND,
+    24: Cmd.NAV_TAKEOFF,
+    25: Cmd.NAV_WAYPOINT,
+    26: Cmd.NAV_LAND,
+    27: Cmd.NAV_LOITER_UNLIM,
+}
 _RELATIVE = (Frame.HOME, Frame.TERRAIN)
 _SEQ_MAX = 65535
 ROWS_MAX = 10_000
@@ -57,73 +77,74 @@ def read_wpl(file: str, data: bytes, name: str, autopilot: AutopilotName | None)
     )
 
 
-def _lines(file: str, data: bytes) -> Iterator[tuple[str, str]]:
-    """(line number, text) of every line that is neither empty nor a comment."""
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        bad_line = str(data[: error.start].count(b"\n") + 1)
-        raise PlanError(file, bad_line, "text", "is not UTF-8") from None
-    for number, line in enumerate(text.split("\n"), start=1):
-        content = line.partition("#")[0].strip()
-        if content:
-            yield str(number), content
-
-
 def _read_rows(file: str, data: bytes, notes: list[Finding]) -> Steps[list[_Row]]:
-    lines = _lines(file, data)
-    where, header = next(lines, ("1", ""))
-    if " ".join(header.split()) != HEADER:
-        raise PlanError(file, where, "header", f'is "{header[:40]}"', f'"{HEADER}"')
+    lines = content_lines(file, data)
+    where, first = next(lines, ("1", ""))
+    header = " ".join(first.split())
+    if header == _HEADER_PB:
+        rows_of_text = waypoint_blocks(file, lines)
+    elif header in _COLUMNS:
+        rows_of_text = (_cells(file, *line, _COLUMNS[header]) for line in lines)
+    else:
+        told = " or ".join(f'"{known}"' for known in (HEADER, _HEADER_100, _HEADER_PB))
+        raise PlanError(file, where, "header", f'is "{header[:40]}"', told)
     rows: list[_Row] = []
-    for where, line in lines:
+    for where, cells in rows_of_text:
         if len(rows) % ITEMS_A_STEP == 0:
             yield
         if len(rows) == ROWS_MAX:
             raise PlanError(file, where, "line", "is one too many", f"at most {ROWS_MAX} items")
-        rows.append(_read_row(file, where, line, notes))
+        rows.append(_read_row(file, where, cells, header, notes))
     return rows
 
 
-def _read_row(file: str, where: str, line: str, notes: list[Finding]) -> _Row:
+def _cells(
+    file: str, where: str, line: str, columns: tuple[str, ...]
+) -> tuple[str, dict[str, str]]:
     fields = line.split()
-    if len(fields) != len(_FIELDS):
-        hint = "the decimal mark is a point" if "," in line else ""
+    if len(fields) != len(columns):
+        expected = f"{len(columns)}: {' '.join(columns)}"
         raise PlanError(
-            file, where, "line", f"has {len(fields)} fields", f"12: {' '.join(_FIELDS)}", hint
+            file, where, "line", f"has {len(fields)} fields", expected, decimal_hint(line)
         )
-    values = [
-        _read_field(file, where, name, field, notes)
-        for name, field in zip(_FIELDS, fields, strict=True)
-    ]
-    whole = dict(zip(_FIELDS, values, strict=True))
-    for name in _WHOLE:
-        value = whole[name]
-        if not (0 <= value <= _SEQ_MAX and value == int(value)):
-            raise PlanError(file, where, name, f"is {value:g}", "a whole number")
+    return where, dict(zip(columns, fields, strict=True))
+
+
+def _read_row(
+    file: str, where: str, cells: dict[str, str], header: str, notes: list[Finding]
+) -> _Row:
+    whole = {name: _read_whole(file, where, name, cells[name]) for name in _WHOLE}
+    command = whole["command"]
+    if header == _HEADER_100:
+        if command not in _COMMANDS_100:
+            told = ", ".join(map(str, sorted(_COMMANDS_100)))
+            raise PlanError(file, where, "command", f"{command} is no action of {header}", told)
+        command = _COMMANDS_100[command]
     item = item_from_numbers(
         file,
         where,
-        int(whole["command"]),
-        int(whole["frame"]),
-        values[4:11],
-        int(whole["seq"]) + 1,
+        command,
+        whole["frame"],
+        [_read_field(file, where, name, cells[name], notes) for name in _NUMBERS],
+        whole["seq"] + 1,
         whole["autocontinue"] != 0,
     )
-    return _Row(int(whole["seq"]), where, item)
+    return _Row(whole["seq"], where, item)
+
+
+def _read_whole(file: str, where: str, name: str, text: str) -> int:
+    value = read_number(file, where, name, text)
+    if not (0 <= value <= _SEQ_MAX and value == int(value)):
+        raise PlanError(file, where, name, f"is {value:g}", "a whole number")
+    return int(value)
 
 
 def _read_field(file: str, where: str, name: str, text: str, notes: list[Finding]) -> float:
-    if _NUMBER.fullmatch(text):
-        value = float(text)
-        if math.isfinite(value):
-            return value
-    if text.lower() == "nan" and name not in _WHOLE:
+    if text.lower() == "nan":
         what = "is NaN as text, read as not set"
         notes.append(Finding(Level.WARNING, where, name, what, "not every program reads this"))
         return math.nan
-    hint = "the decimal mark is a point" if "," in text else ""
-    raise PlanError(file, where, name, f'is "{text[:40]}"', "a number", hint)
+    return read_number(file, where, name, text)
 
 
 def _check_sequence(file: str, rows: list[_Row], notes: list[Finding]) -> None:

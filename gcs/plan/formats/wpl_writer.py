@@ -5,21 +5,22 @@ from __future__ import annotations
 import math
 
 from gcs.plan import commands
-from gcs.plan.errors import Finding, Level, PlanError
+from gcs.plan.errors import Level, PlanError
 from gcs.plan.formats.fence_items import fence_rows
-from gcs.plan.formats.qgc_plan_writer import Written, local_refused
+from gcs.plan.formats.losses import Losses, Written
+from gcs.plan.formats.qgc_plan_writer import local_refused
 from gcs.plan.formats.wpl import HEADER
 from gcs.plan.model import AutopilotName, Item, Local, Plan
 from gcs.wire.ids import Cmd
 
 
 def write_wpl(plan: Plan, autopilot: AutopilotName) -> Written:
-    """`lost` names what a table of waypoints cannot keep; ArduPilot's has no NaN either.
+    """What a table of waypoints cannot keep is named; ArduPilot's has no NaN either.
 
     A mission, then its fence, then its rally points.  Raises PlanError for a plan in a local
     frame, and for an ArduPilot file without a home to put first.
     """
-    lost: list[Finding] = []
+    losses = Losses(plan)
     lines = [HEADER]
 
     def add(frame: int, command: int, numbers: tuple[float, ...], autocontinue: bool) -> None:
@@ -35,7 +36,7 @@ def write_wpl(plan: Plan, autopilot: AutopilotName) -> Written:
         add(
             int(item.frame),
             item.command,
-            _numbers(plan, index, item, autopilot, shift, lost),
+            _numbers(plan, index, item, autopilot, shift, losses),
             item.autocontinue,
         )
     for row in fence_rows(plan.source, plan.fence):
@@ -43,8 +44,11 @@ def write_wpl(plan: Plan, autopilot: AutopilotName) -> Written:
     for point in plan.rally:
         place = (point.lat_deg, point.lon_deg, point.alt_above_home_m)
         add(3, Cmd.NAV_RALLY_POINT, (0.0, 0.0, 0.0, 0.0, *place), True)
-    _name_losses(plan, autopilot, lost)
-    return Written(("\n".join(lines) + "\n").encode(), tuple(lost))
+    without_home = shift == 0
+    losses.settings(home=without_home, firmware=without_home)
+    losses.numbering()
+    losses.heights_of_zones()
+    return Written(("\n".join(lines) + "\n").encode(), losses.found())
 
 
 def _home_numbers(plan: Plan) -> tuple[float, ...]:
@@ -66,7 +70,7 @@ def _numbers(
     item: Item,
     autopilot: AutopilotName,
     shift: int,
-    lost: list[Finding],
+    losses: Losses,
 ) -> tuple[float, ...]:
     label = commands.name(item.command)
     if isinstance(item.place, Local):
@@ -79,8 +83,7 @@ def _numbers(
             raise PlanError(plan.source or plan.name, item.where, label, what)
         numbers = (float(target + shift), *numbers[1:])
     if autopilot == "ardupilot" and any(math.isnan(n) for n in numbers):
-        what = "a value that is not set is written as 0"
-        lost.append(Finding(Level.NOTE, item.where, label, what, index=index))
+        losses.of_item(index, "a value that is not set is written as 0", Level.NOTE)
         numbers = tuple(0.0 if math.isnan(n) else n for n in numbers)
     return numbers
 
@@ -88,16 +91,3 @@ def _numbers(
 def _shown(value: float) -> str:
     """The shortest text that reads back as the same number."""
     return "nan" if math.isnan(value) else repr(float(value))
-
-
-def _name_losses(plan: Plan, autopilot: AutopilotName, lost: list[Finding]) -> None:
-    if plan.cruise_speed_m_s is not None or plan.hover_speed_m_s is not None:
-        lost.append(Finding(Level.NOTE, "", "speeds", "are not kept by this format"))
-    if autopilot == "px4" and plan.home is not None:
-        lost.append(Finding(Level.NOTE, "", "home", "is not kept by a PX4 waypoint file"))
-    if any(item.do_jump_id != i for i, item in enumerate(plan.items, start=1)):
-        lost.append(Finding(Level.NOTE, "", "doJumpId", "items are numbered in their order"))
-    for zone in plan.fence.zones:
-        if zone.floor_above_home_m is not None or zone.ceiling_above_home_m is not None:
-            what = "its floor and ceiling are not kept by this format"
-            lost.append(Finding(Level.WARNING, zone.where, f"fence zone {zone.name}", what))

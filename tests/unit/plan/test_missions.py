@@ -8,7 +8,7 @@ import pytest
 
 from gcs import resources
 from gcs.cli.mission.check import check_plan
-from gcs.cli.mission.mission import read_plan
+from gcs.cli.mission.files import read_plan
 from gcs.exit_codes import ExitCode
 from gcs.plan.errors import Level
 from gcs.plan.model import AutopilotName

@@ -14,6 +14,8 @@ from gcs.plan.model import AutopilotName, Geodetic, Geographic, Plan
 from tests.sample_files import SAMPLES
 
 READ: dict[str, tuple[int, int, int]] = {
+    "csv/everything.csv": (6, 3, 1),
+    "csv/least.csv": (2, 0, 0),
     "local/everything.toml": (9, 2, 0),
     "local/least.toml": (3, 0, 0),
     "plans/around_a_zone.plan": (5, 4, 0),
@@ -27,14 +29,23 @@ READ: dict[str, tuple[int, int, int]] = {
     "plans/without_a_mission.plan": (0, 0, 0),
     "tables/above_sea_level.txt": (4, 0, 0),
     "tables/fence.txt": (0, 4, 0),
+    "tables/fence_of_the_old_kind.txt": (0, 1, 0),
     "tables/jump.waypoints": (5, 0, 0),
+    "tables/protobuf.txt": (2, 0, 0),
     "tables/rally.txt": (0, 0, 2),
+    "tables/rally_of_the_old_kind.txt": (0, 0, 2),
+    "tables/version_100.txt": (3, 0, 0),
     "tables/with_home.waypoints": (5, 0, 0),
     "tables/without_home.txt": (4, 0, 0),
+    "xml/field.kml": (2, 2, 0),
+    "xml/route.gpx": (3, 0, 0),
+    "xml/track.gpx": (3, 0, 0),
 }
 """Items that are flown, zones, rally points."""
 
 REFUSED: dict[str, tuple[str, str]] = {
+    "csv/bad_latitude.csv": ("3", "latitude 147.398"),
+    "csv/bad_separator.csv": ("1", "is not known"),
     "local/bad_key.toml": ("4", "is missing"),
     "local/bad_schema.toml": ("1", "2 is not known"),
     "plans/bad_file_version.plan": ("version", "is 42"),
@@ -47,11 +58,12 @@ REFUSED: dict[str, tuple[str, str]] = {
         "is missing",
     ),
     "tables/bad_decimal_mark.txt": ("2", 'is "47,397742"'),
-    "tables/bad_fence_of_the_old_kind.txt": ("1", "none of the mission files"),
-    "tables/bad_rally_of_the_old_kind.txt": ("1", "none of the mission files"),
+    "tables/bad_open_fence.txt": ("5", "does not close the polygon"),
     "tables/bad_repeated_number.txt": ("4", "it repeats"),
+    "xml/bad_entities.kml": ("2", "a document type may hide"),
+    "xml/bad_two_routes.gpx": ("3", "one of 2 routes and tracks"),
 }
-WITH_HOME = {name for name in READ if name.endswith(".waypoints")}
+WITH_HOME = {name for name in READ if name.endswith((".waypoints", "everything.csv"))}
 """Tables as ArduPilot's programs write them."""
 
 

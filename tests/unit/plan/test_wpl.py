@@ -110,8 +110,11 @@ def test_frames_of_the_wire_are_frames_of_the_file() -> None:
 @pytest.mark.parametrize(
     ("text", "where", "words"),
     [
-        ("QGC WPL 100\n0 1\n", "1", ["QGC WPL 100", "QGC WPL 110"]),
-        ("QGC WPL PB 110\n", "1", ["PB", "QGC WPL 110"]),
+        ("QGC WPL 120\n0 1\n", "1", ["QGC WPL 120", "QGC WPL 110"]),
+        ("QGC WPL 100\n0 3 16 0 0 0 0 1 8 47 9 0 1\n", "2", ["no action", "2, 3, 4"]),
+        ("QGC WPL PB 110\nwaypoint {\nseq: 0\n}\n", "2", ["has no current, frame"]),
+        ("QGC WPL PB 110\nwaypoint {\nseq: 0\n", "2", ["has no end"]),
+        ("QGC WPL PB 110\nwaypoint {\nhue: 0\n}\n", "3", ["hue", "one of seq"]),
         (wpl(HOME, TAKEOFF, TAKEOFF), "4", ["1 follows 1", "repeats", "expected 2"]),
         (wpl(HOME, FIRST, TAKEOFF), "4", ["1 follows 2", "steps back"]),
         (wpl(HOME, "1 0 3 16 0 0 0 0 -35,362 149,165 20 1"), "3", ["lat", '"-35,362"']),
