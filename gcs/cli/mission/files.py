@@ -105,8 +105,10 @@ def _files_in(folder: Path) -> str:
 
 
 def write_file(path_text: str, data: bytes, force: bool) -> None:
-    """UTF-8 text, to standard output for `-`.  Raises ExitError: USAGE where a file is there already, BAD_FILE
-    where it cannot be written."""
+    """UTF-8 text, to standard output for `-`.
+
+    Raises ExitError: USAGE where a file is there already, BAD_FILE where it cannot be written.
+    """
     if path_text == "-":
         click.echo(data.decode(), nl=False)
         return
