@@ -19,6 +19,7 @@ from gcs.session import inputs
 from tests.audits import audited, kind_of, read, resealed, with_data
 from tests.loopback.flight import MISSIONS, Flight
 from tests.loopback.observed import START_NS
+from tests.shares import one_in
 from tests.unit.cli.command_line import Ended, gcs
 
 
@@ -198,8 +199,13 @@ def test_a_decision_that_was_otherwise_is_told_by_what_differs(
     assert difference.reproduced.endswith("goto: outcome refused")
 
 
+PARTS = 4
+"""The kinds of inputs are looked at in so many tests."""
+
+
+@pytest.mark.parametrize("part", one_in(PARTS, range(PARTS)))
 def test_any_byte_of_any_input_is_found_by_its_checksum(
-    stored: tuple[list[Stored], Attachments],
+    stored: tuple[list[Stored], Attachments], part: int
 ) -> None:
     """Also where nothing that is recorded depends on it: noise, messages that mean nothing here."""
     messages, attachments = stored
@@ -208,14 +214,14 @@ def test_any_byte_of_any_input_is_found_by_its_checksum(
         if message.came_in or message.topic == INPUT_TOPIC:
             first.setdefault((message.topic, kind_of(message)), index)
     del first[INPUT_TOPIC, "Setup"]  # of which a byte changed may be that nothing can be read
-    for place, index in first.items():
+    assert len(first) > 25
+    for place, index in list(first.items())[part::PARTS]:
         changed = flipped(len(messages[index].data) * 2 // 3)(messages[index])
         assert changed is not None
         turns = Turns([*messages[:index], changed, *messages[index + 1 :]], attachments)
         for _ in turns:
             pass
         assert turns.altered or turns.missing, place
-    assert len(first) > 25
 
 
 def test_an_attached_file_that_was_altered_is_found(
@@ -260,9 +266,12 @@ def test_a_killed_file_is_audited_as_far_as_its_inputs_go(
     assert "no difference in what is there, but the record has no end" in result.output
 
 
-def test_it_may_break_off_at_any_message(stored: tuple[list[Stored], Attachments]) -> None:
+@pytest.mark.parametrize("first", one_in(4, range(2, 30, 7)))
+def test_it_may_break_off_at_any_message(
+    stored: tuple[list[Stored], Attachments], first: int
+) -> None:
     messages, attachments = stored
-    for end in range(2, 400, 7):
+    for end in range(first, 400, 28):
         result = audited(messages[:end], attachments)
         assert (result.differences, len(result.notes)) == (0, 1), result.first
 

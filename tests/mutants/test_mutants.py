@@ -108,6 +108,7 @@ FATES = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("key", FATES)
 def test_a_planted_survivor_survives_and_a_planted_kill_is_killed(
     report: dict[str, dict[str, object]], key: str
@@ -116,6 +117,7 @@ def test_a_planted_survivor_survives_and_a_planted_kill_is_killed(
     assert report[short]["fate"] == FATES[key]
 
 
+@pytest.mark.thorough
 def test_it_names_the_test_that_killed_and_the_line(
     report: dict[str, dict[str, object]],
 ) -> None:

@@ -1,7 +1,7 @@
 """A reduction of memories to situations that is too coarse shows in what its walk leaves out.
 
-Here situations are told apart by little more than the state, which is a walk of seconds.  What the
-real reduction leaves out is sampled in `test_explore.py`.
+Here situations are told apart by little more than the state, which is a walk of seconds, of which
+`make test` does one.  What the real reduction leaves out is sampled in `test_explore.py`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from tests.proof.explorer import Explorer
 from tests.proof.situation import USUAL, parts
 from tests.proof.unexplored_memories import LeftOut
 from tests.proof.walk import Begun, Explored, Judge, Walk
+from tests.shares import one_in
 from tests.unit.gate.explored import WORLDS
 from tests.unit.gate.planted import FAULTS
 
@@ -42,6 +43,7 @@ def walks(table: Table) -> tuple[Explored, LeftOut, Walk]:
     return explored, left_out, left_out.walk()
 
 
+@pytest.mark.thorough
 def test_memories_that_differ_and_are_taken_for_one_show() -> None:
     explored, left_out, further = walks(TABLE)
     assert explored.fault is None
@@ -53,11 +55,14 @@ def test_memories_that_differ_and_are_taken_for_one_show() -> None:
 
 @pytest.mark.parametrize(
     "what",
-    [
-        "a hold is over at once though the vehicle may fly",
-        "a landing is not asked of a vehicle that is not heard any more",
-        "a hold that was asked for ends with the link",
-    ],
+    one_in(
+        3,
+        [
+            "a hold is over at once though the vehicle may fly",
+            "a landing is not asked of a vehicle that is not heard any more",
+            "a hold that was asked for ends with the link",
+        ],
+    ),
 )
 def test_a_fault_that_the_coarse_walk_misses_is_found(what: str) -> None:
     """Faults that show whichever memories are drawn: five seeds of five found each."""

@@ -205,8 +205,8 @@ def test_garbage_in_the_file_is_never_a_crash(offset: int, garbage: bytes) -> No
         assert reading.condition.position == reading.condition.size
 
 
-PARTS = 4
-"""Every fourth record in each of so many tests."""
+PARTS = 8
+"""Every eighth record in each of so many tests."""
 
 
 @pytest.mark.slow
