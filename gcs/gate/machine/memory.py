@@ -109,7 +109,6 @@ class Memory:
     climb_ends_within_m: float = 0.0  # how near its height the vehicle itself ends a climb
     verifier: Verifier | None = None
     conditions: tuple[tuple[Condition, str], ...] = ()
-    mission_name: str = ""
     mission_items: int = 0
     mission_within: MissionBox | None = None  # where it is flown, as verified before its start
     mission_over: bool = False  # the mission on board is at its last item, or past it

@@ -204,7 +204,7 @@ def _verifier(step: StepContext, verifier: Verifier) -> Iterator[Occurrence]:
 def _mission(step: StepContext, loaded: MissionLoaded) -> Iterator[Occurrence]:
     """What is flown as a mission is refused once it is known that another one may be on board."""
     memory = step.memory
-    memory.mission_name, memory.mission_items = loaded.name, loaded.items
+    memory.mission_items = loaded.items
     memory.mission_over, memory.mission_within = False, None
     if not loaded.items and memory.flown_state is State.FLYING_MISSION:
         text = "the mission on board is not the one that was verified"
