@@ -67,7 +67,9 @@ UNASKED = "it was disarmed and is armed now, and no client of this bridge asked 
 
 
 class BridgePort:
-    """Between the session and its MAVLink clients."""
+    """Between the session and its MAVLink clients.
+
+    Where it is not `open`, nobody asks it or its bridge anything about the vehicles."""
 
     def __init__(
         self,
@@ -92,7 +94,9 @@ class BridgePort:
         self._max_takeoff_up_m = policy.takeoff.max_up_m
         self._stream = policy.stream
         self._endpoints = endpoints
-        self._shown = config.bridge or bool(config.clients)
+        self.open = config.bridge or bool(config.clients)
+        """Whether MAVLink clients can come.  Whether any is there now does not count: what the
+        vehicles do meanwhile is kept for whoever comes next."""
         self._before: list[tuple[int, int]] = [(0, 0)] * len(endpoints)
         self._before_ns = 0
         self._told_in_control = 0
@@ -167,7 +171,7 @@ class BridgePort:
         telemetry = None if vehicle is None else vehicle.telemetry
         if telemetry is None or frame.compid != telemetry.compid:
             return []
-        message = decode(frame) if self._shown else None
+        message = decode(frame)
         if not isinstance(message, ParamValue):
             return []
         autopilot = telemetry.autopilot.name
@@ -203,7 +207,7 @@ class BridgePort:
         """Told where the vehicle has become armed and the gate has not asked it to.  Whether a
         pilot armed it, another station or the vehicle itself no message tells."""
         vehicle = self._vehicles.of_sysid(sysid)
-        if not self._shown or vehicle is None or vehicle.telemetry is None:
+        if vehicle is None or vehicle.telemetry is None:
             return []
         outstanding = vehicle.gate.memory.outstanding
         asked = any(kind is CommandKind.ARM for _, kind in outstanding)
@@ -231,21 +235,19 @@ class BridgePort:
             hears = hears_alone(telemetry.autopilot.name, each.parameters)
             if hears is not None:
                 done += self.bridge.hears_alone(address, hears)
-        if self._shown:
-            links = self._link_rows(now_ns, counts)
-            clients = [
-                msgspec.structs.replace(
-                    client, signed=signatures.told(client.link, verified=client.verified)
-                )
-                for client in self.bridge.status(now_ns)
-            ]
-            rows = [
-                bridge_row(each.gate, each.telemetry, each.losses, now_ns)
-                for each in self._vehicles
-                if each.telemetry is not None
-            ]
-            done.append(Emit(ipc.BridgeStatus(now_ns, links, clients, rows)))
-        return done
+        links = self._link_rows(now_ns, counts)
+        clients = [
+            msgspec.structs.replace(
+                client, signed=signatures.told(client.link, verified=client.verified)
+            )
+            for client in self.bridge.status(now_ns)
+        ]
+        rows = [
+            bridge_row(each.gate, each.telemetry, each.losses, now_ns)
+            for each in self._vehicles
+            if each.telemetry is not None
+        ]
+        return [*done, Emit(ipc.BridgeStatus(now_ns, links, clients, rows))]
 
     def _link_rows(self, now_ns: int, counts: Sequence[Counts]) -> list[ipc.BridgeLink]:
         """The links that vehicles are on, with their rates since the last time."""

@@ -127,7 +127,7 @@ class Incoming:
     def _taken(self, link: int, items: Sequence[Item], now_ns: int) -> list[Frame | GarbageItem]:
         """The frames that are taken, and the rest as the record has it."""
         signed = self._signatures.signed(link)
-        verifying = link in self._bridge.bridge.unverified
+        verifying = self._bridge.open and link in self._bridge.bridge.unverified
         taken: list[Frame | GarbageItem] = []
         for item in items:
             if isinstance(item, Garbage):
@@ -157,8 +157,9 @@ class Incoming:
         effects = self._queue.effects
         mark = len(effects)
         try:
-            for to, raws, left_out in self._bridge.bridge.from_vehicle(frames, now_ns):
-                effects += self._links.together(to, raws, now_ns, left_out)
+            if self._bridge.open:
+                for to, raws, left_out in self._bridge.bridge.from_vehicle(frames, now_ns):
+                    effects += self._links.together(to, raws, now_ns, left_out)
         except Exception as error:
             if len(frames) > 1 and self._in_run:
                 self._queue.back_to(mark)
@@ -286,7 +287,9 @@ class Incoming:
 
     def _also(self, frame: Frame, work: list[Work], now_ns: int) -> list[Work]:
         """What a vehicle's frame is to the vehicle, and to clients and operators."""
-        if frame.msgid == MsgId.PARAM_VALUE:
+        if not self._bridge.open:
+            pass
+        elif frame.msgid == MsgId.PARAM_VALUE:
             work += self._bridge.parameter(frame, now_ns)
         elif frame.msgid == MsgId.HEARTBEAT:
             work += self._bridge.beat(frame, now_ns)

@@ -26,15 +26,15 @@ from gcs.vehicle.gate_port import NOT_FLYING
 def line(
     operators: Operators,
     vehicles: Vehicles,
-    bridge: Bridge,
+    bridge: Bridge | None,
     operator: int,
     command: ipc.Command,
     now_ns: int,
 ) -> ForOwner:
     """One command of an operator; what is about no vehicle is the station's.
 
-    A climb is held back for a moment after a MAVLink client has written how high one is, and an
-    arming after one has set the mode of a mission.
+    `bridge`: None where no MAVLink client can come.  A climb is held back for a moment after a
+    client has written how high one is, and an arming after one has set the mode of a mission.
     """
     if isinstance(command, ipc.Check):
         answer = _checked(operators, vehicles, bridge, operator, command.asked, now_ns)
@@ -51,7 +51,7 @@ def line(
 def _asked(
     operators: Operators,
     vehicles: Vehicles,
-    bridge: Bridge,
+    bridge: Bridge | None,
     operator: int,
     command: ipc.Ask | ipc.Stream,
     owner: int,
@@ -61,7 +61,7 @@ def _asked(
     autopilot, refusal = vehicles.known(owner, now_ns)
     telemetry = None if owner == STATION else vehicles.of_owner(owner).telemetry
     held = None
-    if telemetry is not None:
+    if bridge is not None and telemetry is not None:
         vehicle = Address(telemetry.sysid, telemetry.compid)
         held = bridge.held_back(command, telemetry.autopilot, vehicle)
         not_now = bridge.armings.why_not(command, telemetry.sysid)

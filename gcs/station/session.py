@@ -175,8 +175,10 @@ class Session:
     def deadline_ns(self) -> int:
         """When `Wake` is due; no side effects."""
         if self._deadline_ns is None:
-            waits = (self._vehicles.deadline_ns, self._bridge.bridge.deadline_ns)
-            parts_ns = self._parts_ns = min((ns for ns in waits if ns is not None), default=None)
+            parts_ns, port = self._vehicles.deadline_ns, self._bridge
+            if port.open and (client_ns := port.bridge.deadline_ns) is not None:
+                parts_ns = client_ns if parts_ns is None else min(parts_ns, client_ns)
+            self._parts_ns = parts_ns
             tick_ns = self._ticks.next_ns
             self._deadline_ns = tick_ns if parts_ns is None else min(tick_ns, parts_ns)
         return self._deadline_ns
@@ -223,7 +225,8 @@ class Session:
                 return queue.take()
         else:
             queue.run([*recorded(given), *self._begin(given, now_ns)], now_ns)
-        queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
+        if self._bridge.open:
+            queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
         queue.run(self._ending.if_due(self._log_path, now_ns), now_ns)
         self._unfinished = self._deadline_ns = None
         dropped = self._incoming.take_dropped()
@@ -274,14 +277,14 @@ class Session:
             case Wake():
                 if not self._waited(now_ns):
                     return self._ticks.wake(now_ns)
-                of_clients = self._bridge.bridge.wake(now_ns)
+                of_clients = self._bridge.bridge.wake(now_ns) if self._bridge.open else ()
                 of_vehicles = self._vehicles.each(lambda each: each.wake(now_ns))
                 return [*of_clients, *of_vehicles, *self._ticks.wake(now_ns)]
             case OperatorJoined():
                 return self._welcome(given, now_ns)
             case OperatorLine(operator, command):
-                vehicles, bridge = self._vehicles, self._bridge.bridge
-                return [line(self._operators, vehicles, bridge, operator, command, now_ns)]
+                bridge = self._bridge.bridge if self._bridge.open else None
+                return [line(self._operators, self._vehicles, bridge, operator, command, now_ns)]
             case OperatorNoise(operator, text):
                 return [Emit(ipc.Trouble(f"not a command: {text}"), operator)]
             case OperatorGone(operator, reason):
@@ -329,6 +332,8 @@ class Session:
                 work = vehicle.ask_gate(given, now_ns)
                 return work + self._separation.moved(self._vehicles, owner, now_ns)
             case GateInput(given):
+                if not self._bridge.open:
+                    return vehicle.ask_gate(given, now_ns)
                 answered = self._bridge.before_gate(given, vehicle.sysid, now_ns)
                 return [*answered, *vehicle.ask_gate(given, now_ns)]
             case Send(message):
@@ -342,7 +347,7 @@ class Session:
                 return [Emit(self._snapshot(now_ns)), *ended]
             case gate_effects.StreamVerdict():
                 return self._operators.stream_verdict(item, vehicle.sysid, now_ns)
-            case gate_effects.SendCommand(kind=CommandKind.ARM):
+            case gate_effects.SendCommand(kind=CommandKind.ARM) if self._bridge.open:
                 self._bridge.bridge.armings.sent(vehicle.sysid, now_ns)
                 return vehicle.carry_out(item, now_ns)
             case (
@@ -360,7 +365,9 @@ class Session:
             case Log():
                 prefix = self._vehicles.prefix(owner)
                 told = announcements.log(item, now_ns, prefix)
-                return [*told, *self._bridge.logged(item, vehicle, now_ns)]
+                if self._bridge.open:
+                    return [*told, *self._bridge.logged(item, vehicle, now_ns)]
+                return [*told]
             case AskGate(request_id, request):
                 return self._operators.ask_gate(request_id, request)
             case AskMission():
@@ -429,7 +436,8 @@ class Session:
         """Heartbeat, what is missing, and the slow half of the record."""
         first = self._vehicles.first
         work: list[Work] = [*self._links.heartbeat(now_ns), *self._remind()]
-        work += self._bridge.second(now_ns, self._links.counts, self._signatures)
+        if self._bridge.open:
+            work += self._bridge.second(now_ns, self._links.counts, self._signatures)
         work += self._signatures.second(now_ns)
         work += self._operators.second(now_ns)
         if first.telemetry is None:

@@ -10,6 +10,7 @@ import pytest
 from pymavlink.dialects.v20 import all as mavlink
 
 from gcs.bridge.bridge import Bridge
+from gcs.config import StationConfig
 from gcs.report import FrameItem, FramesItem, InputItem
 from gcs.session.effects import Effect, Record, Transmit
 from gcs.session.inputs import ClientCame, Datagram
@@ -121,7 +122,7 @@ def test_each_frame_that_raises_is_a_fault_of_its_own(monkeypatch: pytest.Monkey
 def test_frames_that_only_pass_through_do_so_without_one_that_raises(
     monkeypatch: pytest.MonkeyPatch, methods: Methods
 ) -> None:
-    script = Script().met()
+    script = Script(config=StationConfig(clients=["test"])).met()
     script.feed(ClientCame(CLIENT, "udp 1", stream=False))
     messages = [mavlink.MAVLink_vfr_hud_message(speed, 0.0, 0, 0, 0.0, 0.0) for speed in (1, 2, 3)]
     given = run_of(script, *messages)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import pytest
 
+from gcs.config import StationConfig
 from gcs.report import Direction
 from gcs.session.effects import Effect, Transmit
 from gcs.session.inputs import ClientCame, Datagram
@@ -35,7 +36,7 @@ def frame(writer: FrameWriter, name: str, payload: bytes | None = None) -> bytes
 
 def bridged() -> Script:
     """A vehicle is heard, and two clients, 255/190 and 254/190."""
-    script = Script()
+    script = Script(config=StationConfig(clients=["test"]))
     script.hear(wire.heartbeat())
     for link, sysid in zip(CLIENTS, (255, 254), strict=True):
         script.feed(ClientCame(link, f"udp 127.0.0.1:{link}", False))
