@@ -53,8 +53,8 @@ from gcs.vehicle.missions.missions import timing_of
 from gcs.vehicle.missions.return_places import why_not_rally_point
 from gcs.vehicle.parameters.settings import SPEED, TAKEOFF_HEIGHT
 from gcs.vehicle.snapshot import bridge_row, lost_pct
+from gcs.vehicle.talk.commands import shown_commands
 from gcs.vehicle.talk.discovery import needed_hz
-from gcs.vehicle.talk.lost_acks import shown_commands
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
 from gcs.wire.codec import decode
@@ -156,8 +156,8 @@ class BridgePort:
             not_on_board=vehicle.not_on_board,
             mission_paused=vehicle.mission_paused,
             stream=self._stream,
-            mission_items=vehicle.mission_items,
-            land_starts=vehicle.land_starts,
+            mission_items=vehicle.missions.items,
+            land_starts=vehicle.missions.land_starts,
             clears_takeoff=partial(_clears_takeoff, vehicle.gate),
             why_not_rally=partial(why_not_rally_point, self._policy, vehicle.telemetry),
             why_not_resume=partial(vehicle.why_not_resume, now_ns),
@@ -243,7 +243,7 @@ class BridgePort:
             for client in self.bridge.status(now_ns)
         ]
         rows = [
-            bridge_row(each.gate, each.telemetry, each.losses, now_ns)
+            bridge_row(each.gate, each.telemetry, each.presence.losses, now_ns)
             for each in self._vehicles
             if each.telemetry is not None
         ]
@@ -271,7 +271,7 @@ class BridgePort:
     def _lost_pct(self, link: int) -> float:
         """The worst of the vehicles that are answered there; of all where none is."""
         here = [each for each in self._vehicles if link in each.links] or [*self._vehicles]
-        return max(lost_pct(each.losses) for each in here)
+        return max(lost_pct(each.presence.losses) for each in here)
 
     def as_operator(
         self,

@@ -44,20 +44,20 @@ class Ending:
     @property
     def under_way(self) -> bool:
         """Somebody leaves, and waits for the vehicle or until a time: every datagram may tell."""
-        return self._leaving_since_ns is not None or self._operators.anyone_leaves
+        return self._leaving_since_ns is not None or bool(self._operators.control.leaving)
 
     def if_due(self, log_path: str, now_ns: int) -> list[Work]:
         """The end of the session, where the start is refused or the vehicle may be left."""
         if self.finished:
             return []
-        bad_home = self._vehicles.first.bad_home
+        bad_home = self._vehicles.first.port.bad_home
         if bad_home is not None and len(self._vehicles) == 1:
             where = where_is(bad_home.zone, self._setup)
             text = f"{where}: home is outside: {bad_home.sentence}"
             hint = "the vehicle returns and lands there: a fence round it, or another --policy"
             trouble = Emit(ipc.Trouble(text, hint, ExitCode.BAD_FILE))
             return [trouble, *self.finish(ExitCode.BAD_FILE, text)]
-        refusal = self._vehicles.first.bad_start
+        refusal = self._vehicles.first.port.bad_start
         if len(self._vehicles) > 1:
             outside = self._outside()
             if outside:
@@ -69,7 +69,7 @@ class Ending:
             trouble = Emit(ipc.Trouble(text, hint, ExitCode.REFUSED_BY_GATE))
             return [trouble, *self.finish(ExitCode.REFUSED_BY_GATE, text)]
         if self._leaving_since_ns is None:
-            return self._farewells(log_path, now_ns) if self._operators.anyone_leaves else []
+            return self._farewells(log_path, now_ns) if self._operators.control.leaving else []
         overdue = now_ns - self._leaving_since_ns >= self._times.real_ns(LEAVING_NS)
         return self.finish(0, self._last_words()) if self._vehicles.settled or overdue else []
 
@@ -78,9 +78,9 @@ class Ending:
         are: every request is verified.  The others may fly on."""
         told: list[Work] = []
         for slot, vehicle in enumerate(self._vehicles):
-            if vehicle.bad_start is not None and slot not in self._told_outside:
+            if vehicle.port.bad_start is not None and slot not in self._told_outside:
                 self._told_outside.add(slot)
-                text = f"it stands outside the fence: {vehicle.bad_start.sentence}"
+                text = f"it stands outside the fence: {vehicle.port.bad_start.sentence}"
                 told.append(ForOwner(slot, (Log(Level.ERROR, NODE, text),)))
         return told
 

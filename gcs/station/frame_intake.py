@@ -73,7 +73,7 @@ class Incoming:
         """When a frame of another station that calls itself as this one came last."""
         self._in_run = False
         """What is being handled is a run: one frame that raises does not take the others along."""
-        self._dropped: list[tuple[Datagram, Exception]] = []
+        self.dropped: list[tuple[Datagram, Exception]] = []
 
     def of_client(self, given: Datagram) -> bool:
         """Whether it came from a MAVLink client, not from the vehicle's side."""
@@ -114,14 +114,14 @@ class Incoming:
 
     def take_dropped(self) -> list[tuple[Datagram, Exception]]:
         """The frames of the run that raised, and what they raised."""
-        dropped, self._dropped = self._dropped, []
+        dropped, self.dropped = self.dropped, []
         return dropped
 
     def _drop(self, link: int, frame: Frame, error: Exception, mark: int) -> bool:
         """Leave out a frame that raised; False where that is the whole input."""
         if self._in_run:
             self._queue.back_to(mark)
-            self._dropped.append((Datagram(link, frame.raw), error))
+            self.dropped.append((Datagram(link, frame.raw), error))
         return self._in_run
 
     def _taken(self, link: int, items: Sequence[Item], now_ns: int) -> list[Frame | GarbageItem]:
@@ -182,7 +182,7 @@ class Incoming:
                 if found is not None:
                     return self._in_turn(link, frames, *found, now_ns)
         worked = False
-        special, own_compid = self._operators.subscribed, self._own[1]
+        special, own_compid = self._operators.subscriptions.subscribed, self._own[1]
         passing: list[Frame] = []
         for item in taken:
             if type(item) is Frame:
@@ -217,13 +217,13 @@ class Incoming:
         raws = tuple(map(raw_of, frames))
         effects.append(Record(FramesItem(link, _RECEIVED, raws)))
         worked = bool(alive) and queue.run(alive, now_ns, slot)
-        special = self._operators.subscribed
+        special, vehicle = self._operators.subscriptions.subscribed, self._vehicles.of_owner(slot)
         wanted = [each for each in frames if each.msgid in INTERPRETED or each.msgid in special]
         for frame in wanted:
             mark = len(effects)
             try:
                 if frame.msgid in PLACES and frame.msgid not in special:
-                    work = self._vehicles.placed(slot, frame, now_ns)
+                    work = vehicle.frames.placed(frame, now_ns)
                     worked |= bool(work) and queue.run(work, now_ns, slot)
                 else:
                     worked, work = True, self._vehicles.counted(slot, link, frame, now_ns)
@@ -293,6 +293,7 @@ class Incoming:
             work += self._bridge.parameter(frame, now_ns)
         elif frame.msgid == MsgId.HEARTBEAT:
             work += self._bridge.beat(frame, now_ns)
-        if frame.sysid == self._vehicles.first.sysid:
-            work += self._operators.heard(frame, now_ns)
+        subscriptions = self._operators.subscriptions
+        if frame.msgid in subscriptions.subscribed and frame.sysid == self._vehicles.first.sysid:
+            work += subscriptions.heard(frame, now_ns)
         return work

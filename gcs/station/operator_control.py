@@ -48,14 +48,10 @@ class OperatorControl:
         """`first_looks`: whoever started the station does not begin in control of it (a bridge)."""
         self._there = {FIRST: Operator(FIRST, first_name)}
         self._by_default = NOBODY if first_looks else FIRST
-        self._in_control = self._by_default
-        self._leaving: dict[int, int] = {}
+        self.in_control = self._by_default
+        """The operator's number, or NOBODY."""
+        self.leaving: dict[int, int] = {}
         """Operators that are still to be told good-bye, and until when they wait for the hold."""
-
-    @property
-    def in_control(self) -> int:
-        """The operator number, or NOBODY."""
-        return self._in_control
 
     @property
     def first_is_alone(self) -> bool:
@@ -81,10 +77,10 @@ class OperatorControl:
         """It goes in good order: the gate holds the vehicle where that is wanted, and once it is
         seen to hold, `farewells` says good-bye."""
         leaving = self._there.get(operator)
-        if leaving is None or operator in self._leaving:
+        if leaving is None or operator in self.leaving:
             return []
-        hold = leaving.hold_on_leave and operator == self._in_control
-        self._leaving[operator] = now_ns + LEAVING_NS if hold else now_ns
+        hold = leaving.hold_on_leave and operator == self.in_control
+        self.leaving[operator] = now_ns + LEAVING_NS if hold else now_ns
         return self._hold("left") if hold else []
 
     def lost(self, operator: int, reason: str) -> list[Work]:
@@ -93,20 +89,13 @@ class OperatorControl:
         gone = self._there.get(operator)
         if gone is None:
             return []
-        held = operator in self._leaving or operator != self._in_control
+        held = operator in self.leaving or operator != self.in_control
         return [*([] if held else self._hold(reason)), *self._forget(gone)]
-
-    @property
-    def anyone_leaves(self) -> bool:
-        """Whether somebody waits for its good-bye."""
-        return bool(self._leaving)
 
     def farewells(self, settled: bool, now_ns: int) -> list[int]:
         """Those who left and need not wait any longer: the vehicle is seen to hold, or overdue."""
         return [
-            operator
-            for operator, until_ns in self._leaving.items()
-            if settled or now_ns >= until_ns
+            operator for operator, until_ns in self.leaving.items() if settled or now_ns >= until_ns
         ]
 
     def gone(self, operator: int) -> list[Work]:
@@ -115,9 +104,9 @@ class OperatorControl:
 
     def _forget(self, gone: Operator) -> list[Work]:
         del self._there[gone.number]
-        self._leaving.pop(gone.number, None)
+        self.leaving.pop(gone.number, None)
         work: list[Work] = [Log(Level.DEBUG, NODE, f"{gone.label} left")]
-        if gone.number == self._in_control:
+        if gone.number == self.in_control:
             work += self._give(self._by_default if FIRST in self._there else NOBODY)
         else:
             work.append(self._told())
@@ -133,29 +122,29 @@ class OperatorControl:
     def give_where_free(self, operator: int, ask: ipc.Ask) -> list[Work]:
         """Before a request that `refusal` did not refuse: where nobody is in control, the first
         who asks for something that needs it gets it."""
-        if ask.word in ALWAYS_HEARD or self._in_control != NOBODY:
+        if ask.word in ALWAYS_HEARD or self.in_control != NOBODY:
             return []
         return self._give(operator)
 
     def refusal(self, operator: int, ask: ipc.Ask) -> Refusal | None:
         """Why this operator may not ask for it, if it may not."""
-        if operator in self._leaving or operator not in self._there:
+        if operator in self.leaving or operator not in self._there:
             return Refusal(Code.OPERATOR_LOST, "this operator has left")
-        if self._in_control in (operator, NOBODY) or (ask.word in ALWAYS_HEARD and not ask.force):
+        if self.in_control in (operator, NOBODY) or (ask.word in ALWAYS_HEARD and not ask.force):
             return None
-        other = self._there[self._in_control].label
+        other = self._there[self.in_control].label
         how = "take it over with --take, or by the words `station take`"
         if operator >= FIRST_NUMBER:
             how = "MAV_CMD_REQUEST_OPERATOR_CONTROL takes it over"
         return Refusal(
             Code.OTHER_OPERATOR,
             f"{other} is in control of this station; {how}",
-            (("in_control", float(self._in_control)),),
+            (("in_control", float(self.in_control)),),
         )
 
     def take(self, operator: int) -> list[Work]:
         """It takes control over from whoever has it."""
-        return [] if operator == self._in_control else self._give(operator)
+        return [] if operator == self.in_control else self._give(operator)
 
     def release(self, operator: int) -> list[Work]:
         """It gives control up, and the first who asks gets it.
@@ -164,13 +153,13 @@ class OperatorControl:
         Hovering would not do: a stream of the same operator that goes on would get control again.
         Who wants a goal flown on lets another one take over.
         """
-        if operator != self._in_control:
+        if operator != self.in_control:
             return []
         why = f"{self._there[operator].label} has released control"
         return [*self._hold(why), *self._give(NOBODY)]
 
     def _give(self, operator: int) -> list[Work]:
-        before, self._in_control = self._there.get(self._in_control), operator
+        before, self.in_control = self._there.get(self.in_control), operator
         now = self._there.get(operator)
         text = "nobody is in control of the station"
         if now is not None:
@@ -180,4 +169,4 @@ class OperatorControl:
 
     def _told(self) -> Emit:
         infos = [ipc.OperatorInfo(one.number, one.name) for one in self._there.values()]
-        return Emit(ipc.Operators(infos, self._in_control))
+        return Emit(ipc.Operators(infos, self.in_control))

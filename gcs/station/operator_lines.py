@@ -67,7 +67,7 @@ def _asked(
         not_now = bridge.armings.why_not(command, telemetry.sysid)
         refusal = refusal or not_now
     if isinstance(command, ipc.Stream) and owner != STATION:
-        streamed = vehicles.of_owner(owner).streamed_by(operator)
+        streamed = vehicles.of_owner(owner).orbits.streams_itself(operator)
         return [*streamed, *operators.line(operator, command, autopilot, refusal, now_ns)]
     if held is None:
         return operators.line(operator, command, autopilot, refusal, now_ns)

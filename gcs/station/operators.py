@@ -7,8 +7,6 @@ and returns work for the rest of the session.
 
 from __future__ import annotations
 
-from collections.abc import Container
-
 from gcs import ipc
 from gcs.bridge.effects import AsksPlan, StopsPlan
 from gcs.enu_text import plain_enu
@@ -41,7 +39,6 @@ from gcs.station.operator_control import NOBODY, OperatorControl
 from gcs.station.streams import BEGIN, Streams
 from gcs.station.subscriptions import Subscriptions
 from gcs.vehicle.talk.telemetry import Telemetry
-from gcs.wire.frame import Frame
 from gcs.wire.messages import CommandLong
 
 NODE = "link"
@@ -54,22 +51,22 @@ class Operators:
 
     def __init__(self, setup: Setup, times: Times) -> None:
         self._keep = setup.config.keep
-        self._control = OperatorControl(setup.config.operator, first_looks=setup.config.bridge)
+        self.control = OperatorControl(setup.config.operator, first_looks=setup.config.bridge)
         self._requests = Requests()
         self._operations = Operations()
-        self._subscriptions = Subscriptions(times)
+        self.subscriptions = Subscriptions(times)
         self._streams = Streams()
 
     @property
     def in_control(self) -> ipc.OperatorInfo | None:
         """The operator in control of the station; None: nobody."""
-        operator = self._control.in_control
-        return ipc.OperatorInfo(operator, self._control.name(operator)) if operator else None
+        operator = self.control.in_control
+        return ipc.OperatorInfo(operator, self.control.name(operator)) if operator else None
 
     @property
     def first_is_alone(self) -> bool:
         """Nobody has joined whoever started the station; MAVLink clients look at no screen."""
-        return self._control.first_is_alone
+        return self.control.first_is_alone
 
     def operator_of(self, request_id: int) -> int:
         """Who has made the request that is not over yet."""
@@ -78,34 +75,29 @@ class Operators:
     # ----------------------------------------------------------------------- come and go
 
     def join(self, operator: int, name: str, hold_on_leave: bool) -> list[Work]:
-        return self._control.join(operator, name, hold_on_leave)
+        return self.control.join(operator, name, hold_on_leave)
 
     def lost(self, operator: int, reason: str) -> list[Work]:
         """Its connection has ended.  The station lives as long as its first operator, unless it
         is to be kept."""
-        self._subscriptions.forget(operator)
+        self.subscriptions.forget(operator)
         ended = self._streams.forget(operator)
         if operator == FIRST and not self._keep:
             return [*ended, EndSession(reason)]
-        return [*ended, *self._control.lost(operator, reason)]
+        return [*ended, *self.control.lost(operator, reason)]
 
     def signalled(self, name: str) -> list[Work]:
         """A kept station outlives the terminal of its first operator."""
         return self.lost(FIRST, name) if name == "SIGHUP" else [EndSession(name)]
 
-    @property
-    def anyone_leaves(self) -> bool:
-        """Whether somebody waits for its good-bye."""
-        return self._control.anyone_leaves
-
     def farewells(self, settled: bool, words: str, log_path: str, now_ns: int) -> list[Work]:
         """Good-bye to those who leave a station that lives on; `words` say how the vehicle is."""
         work: list[Work] = []
-        for operator in self._control.farewells(settled, now_ns):
-            self._subscriptions.forget(operator)
-            sentence = words if operator == self._control.in_control else self._goes_on()
+        for operator in self.control.farewells(settled, now_ns):
+            self.subscriptions.forget(operator)
+            sentence = words if operator == self.control.in_control else self._goes_on()
             work.append(Emit(ipc.Bye(0, log_path, sentence, goes_on=True), operator))
-            work += self._control.gone(operator)
+            work += self.control.gone(operator)
         return work
 
     def _goes_on(self) -> str:
@@ -120,7 +112,7 @@ class Operators:
     def _leave(self, operator: int, reason: str, now_ns: int) -> list[Work]:
         if operator == FIRST and not self._keep:
             return [EndSession(reason)]
-        return self._control.leave(operator, now_ns)
+        return self.control.leave(operator, now_ns)
 
     # ------------------------------------------------------------------------------ lines
 
@@ -148,14 +140,14 @@ class Operators:
             case ipc.Stream():
                 return self._stream(operator, command, no_vehicle, now_ns)
             case ipc.Pending(goal_enu, _):
-                if operator != self._control.in_control:
+                if operator != self.control.in_control:
                     return []  # who only looks cannot send it
                 text = f"Keyboard: {plain_enu(goal_enu)}"
                 return [Log(Level.INFO, "keyboard_manager", text)]
             case ipc.Leave(reason):
                 return self._leave(operator, reason, now_ns)
             case ipc.Subscribe(names):
-                return [*self._subscriptions.subscribe(operator, names, now_ns)]
+                return [*self.subscriptions.subscribe(operator, names, now_ns)]
             case ipc.ListOperations(number):
                 return [Emit(ipc.OperationList(number, self._operations.listed()), operator)]
             case ipc.Check():
@@ -178,7 +170,7 @@ class Operators:
         now_ns: int,
     ) -> list[Work]:
         """What cannot be judged at all takes no control."""
-        refusal = self._control.refusal(operator, ask)
+        refusal = self.control.refusal(operator, ask)
         if refusal is not None:
             return self._refuse(self._requests.open(ask, operator), ask, refusal)
         doer = doer_of(ask.word)
@@ -210,12 +202,12 @@ class Operators:
         self, operator: int, sample: ipc.Stream, no_vehicle: Refusal | None, now_ns: int
     ) -> list[Work]:
         """One sample: for the gate, if this operator is in control or nobody is."""
-        refusal = self._control.refusal(operator, BEGIN)
+        refusal = self.control.refusal(operator, BEGIN)
         if refusal is not None:
             return self._refuse_sample(operator, sample, refusal, now_ns)
         if no_vehicle is not None:
             return self._refuse_sample(operator, sample, no_vehicle, now_ns)
-        free = self._control.in_control == NOBODY
+        free = self.control.in_control == NOBODY
         if free and not self._streams.goes_on(operator, sample, now_ns):
             return []
         # Who is free to take control has it when the gate has let the sample through.
@@ -233,7 +225,7 @@ class Operators:
 
     def _give_where_free(self, operator: int, ask: ipc.Ask, now_ns: int) -> list[Work]:
         """Control, to the first who asks for something that needs it."""
-        return self._without_streams(operator, self._control.give_where_free(operator, ask), now_ns)
+        return self._without_streams(operator, self.control.give_where_free(operator, ask), now_ns)
 
     def _without_streams(self, operator: int, given: list[Work], now_ns: int) -> list[Work]:
         """`operator` is given control: the stream of whoever had it is over, and not only when it
@@ -253,10 +245,10 @@ class Operators:
         """What is asked of the station, not of the vehicle, is done at once."""
         done = _done(self._requests.open(ask, operator), "")
         if ask.word == "station_take":
-            taken = self._control.take(operator)
+            taken = self.control.take(operator)
             return [*self._without_streams(operator, taken, now_ns), *done]
         if ask.word == "station_release":
-            return [*self._control.release(operator), *done]
+            return [*self.control.release(operator), *done]
         return [*done, EndSession(f"operator {operator} ended the station")]
 
     def _ask_stop(self, operator: int, ask: ipc.Ask) -> list[Work]:
@@ -275,7 +267,7 @@ class Operators:
         """A MAVLink client brings a plan, or asks for one to be taken off."""
         operator, ask = asked.client, asked.ask
         request_id = self._requests.open(ask, operator)
-        refusal = self._control.refusal(operator, ask) or no_vehicle
+        refusal = self.control.refusal(operator, ask) or no_vehicle
         if refusal is not None:
             return self._refuse(request_id, ask, refusal)
         given = self._give_where_free(operator, ask, now_ns)
@@ -304,7 +296,7 @@ class Operators:
         """
         made = self._requests.get(request_id)
         if isinstance(request, StartMission):
-            refusal = self._control.refusal(made.operator, made.ask)
+            refusal = self.control.refusal(made.operator, made.ask)
             if refusal is not None:
                 return self._refuse(request_id, made.ask, refusal)
         given = gate_inputs.Requested(request_id, made.source, request)
@@ -314,7 +306,7 @@ class Operators:
         """To the operator who asked; an accepted request is an operation, which all are told."""
         request_id, requests = told.request_id, self._requests
         asked = requests.get(request_id)
-        name = self._control.name(asked.operator)
+        name = self.control.name(asked.operator)
         work: list[Work] = [*announcements.verdict(told, asked, name, sysid, now_ns)]
         if told.ruling is not Ruling.ACCEPTED:
             requests.close(request_id)
@@ -340,7 +332,7 @@ class Operators:
     def _tell_stream(self, told: StreamVerdict, sysid: int, now_ns: int) -> list[Work]:
         """To the operator, and where it is a MAVLink client to whoever watches the bridge."""
         operator = operator_of(told.source)
-        name = self._control.name(operator)
+        name = self.control.name(operator)
         return [*announcements.stream_verdict(told, operator, name, sysid, now_ns)]
 
     def second(self, now_ns: int) -> list[Work]:
@@ -352,16 +344,7 @@ class Operators:
 
     def missing_messages(self, telemetry: Telemetry, now_ns: int) -> list[CommandLong]:
         """Commands that ask the vehicle for what somebody subscribed to and does not hear."""
-        return [*self._subscriptions.missing(telemetry, now_ns)]
-
-    @property
-    def subscribed(self) -> Container[int]:
-        """Ids of the messages that somebody has subscribed to."""
-        return self._subscriptions.subscribed
-
-    def heard(self, frame: Frame, now_ns: int) -> list[Work]:
-        """A good frame of the vehicle, for those who subscribed to such messages."""
-        return [*self._subscriptions.heard(frame, now_ns)]
+        return [*self.subscriptions.missing(telemetry, now_ns)]
 
 
 def _end_of_stream(vehicle: int) -> ipc.Ask:

@@ -29,8 +29,6 @@ class Separation:
 
     def moved(self, vehicles: Vehicles, slot: int, now_ns: int) -> list[Work]:
         """The vehicle in that slot has told its position."""
-        if len(vehicles) == 1:
-            return []
         work: list[Work] = []
         for other in range(len(vehicles)):
             if other != slot:

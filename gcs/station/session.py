@@ -229,8 +229,8 @@ class Session:
             queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
         queue.run(self._ending.if_due(self._log_path, now_ns), now_ns)
         self._unfinished = self._deadline_ns = None
-        dropped = self._incoming.take_dropped()
-        if dropped:
+        if self._incoming.dropped:
+            dropped = self._incoming.take_dropped()
             self._frames_raised = len(dropped)
             raise FramesRaisedError(queue.take(), dropped)
         return queue.take()
@@ -322,15 +322,16 @@ class Session:
         vehicle = self._vehicles.of_owner(owner)
         match item:
             case GateInput(Tick()) if owner == STATION:
-                one = self._operators.in_control
-                operator = 0 if one is None else one.client
-                orbits = self._vehicles.each(lambda v: v.orbit_sample(operator, now_ns))
+                in_control = self._operators.control.in_control
+                orbits = self._vehicles.orbit_samples(in_control, now_ns)
                 return [*orbits, *self._vehicles.to_all(item)]
             case GateInput() if owner == STATION:
                 return self._vehicles.to_all(item)
             case GateInput(given) if type(given) is PositionSeen:  # nearly all of them
                 work = vehicle.ask_gate(given, now_ns)
-                return work + self._separation.moved(self._vehicles, owner, now_ns)
+                if len(self._vehicles) > 1:
+                    work += self._separation.moved(self._vehicles, owner, now_ns)
+                return work
             case GateInput(given):
                 if not self._bridge.open:
                     return vehicle.ask_gate(given, now_ns)
@@ -380,7 +381,7 @@ class Session:
                 autopilot, refusal = vehicle.for_operators(now_ns)
                 return self._operators.line(operator, sample, autopilot, refusal, now_ns)
             case StopTransfer(request_id):
-                return self._vehicles.each(lambda each: each.stop_transfer(request_id))
+                return self._vehicles.each(lambda each: each.missions.stop(request_id))
             case StreamOver(sysid, request_id):
                 slot = self._vehicles.slot_of(sysid)
                 end = AskGate(request_id, EndStream())
@@ -455,7 +456,7 @@ class Session:
 
     def _welcome(self, joined: OperatorJoined, now_ns: int) -> list[Work]:
         """What everybody else knows already, for one that has just joined."""
-        operator, fence = joined.operator, self._vehicles.first.fence_shapes
+        operator, fence = joined.operator, self._vehicles.first.port.fence_shapes
         return [
             Emit(hello(self._setup, self._log_path, fence, operator), operator),
             Emit(self._snapshot(now_ns), operator),
@@ -489,8 +490,8 @@ class Session:
             first.gate,
             first.telemetry,
             now_ns,
-            mission_total=first.mission_total,
-            losses=first.losses,
+            mission_total=first.missions.total,
+            losses=first.presence.losses,
             log_path=self._log_path,
             recording=self._recording,
             recorded_bytes=self._recorded_bytes,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Iterator
 
 from gcs import ipc
 from gcs.session.effects import Effect, Emit
@@ -27,8 +27,9 @@ class Subscriptions:
 
     def __init__(self, times: Times) -> None:
         self._interval_ns = times.real_ns(LEAST_INTERVAL_NS)
-        self._told_ns: dict[int, dict[int, int]] = {}
-        """Message id -> operator -> when it was told last."""
+        self.subscribed: dict[int, dict[int, int]] = {}
+        """Of each message id that somebody has, or had, subscribed to: when which operator was told
+        last."""
         self._heard_ns: dict[int, int] = {}
         self._asked_ns: dict[int, int] = {}
         self._patience_ns = times.real_ns(PATIENCE_NS)
@@ -38,7 +39,7 @@ class Subscriptions:
         self.forget(operator)
         known = [MESSAGES_BY_NAME[name].msgid for name in names if name in MESSAGES_BY_NAME]
         for msgid in known[:MAX_MESSAGES]:
-            self._told_ns.setdefault(msgid, {})[operator] = 0
+            self.subscribed.setdefault(msgid, {})[operator] = 0
             self._asked_ns.setdefault(msgid, now_ns)
         unknown = [name for name in names if name not in MESSAGES_BY_NAME]
         if unknown:
@@ -54,25 +55,20 @@ class Subscriptions:
     def missing(self, telemetry: Telemetry, now_ns: int) -> Iterator[CommandLong]:
         """SET_MESSAGE_INTERVAL for what is subscribed to and does not come by itself: many
         vehicles, ArduPilot above all, send little unasked."""
-        for msgid, operators in self._told_ns.items():
+        for msgid, operators in self.subscribed.items():
             heard_ns, asked_ns = self._heard_ns.get(msgid, 0), self._asked_ns[msgid]
             if operators and now_ns - max(heard_ns, asked_ns) > self._patience_ns:
                 self._asked_ns[msgid] = now_ns
                 yield message_interval(telemetry, msgid, ASKED_HZ)
 
-    @property
-    def subscribed(self) -> Container[int]:
-        """Ids of the messages that somebody has, or had, subscribed to."""
-        return self._told_ns
-
     def forget(self, operator: int) -> None:
         """It has left."""
-        for operators in self._told_ns.values():
+        for operators in self.subscribed.values():
             operators.pop(operator, None)
 
     def heard(self, frame: Frame, now_ns: int) -> list[Effect]:
         """A good frame of the vehicle: who is told of it."""
-        operators = self._told_ns.get(frame.msgid)
+        operators = self.subscribed.get(frame.msgid)
         if not operators:
             return []
         self._heard_ns[frame.msgid] = now_ns

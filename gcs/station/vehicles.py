@@ -96,12 +96,12 @@ class Vehicles:
 
     def heard_names(self, now_ns: int) -> list[str]:
         """The names of all that are heard."""
-        return [name for vehicle in self._all for name in vehicle.heard_vehicles(now_ns)]
+        return [name for vehicle in self._all for name in vehicle.roster.names(now_ns)]
 
     def why_not_ours(self, sysid: int, now_ns: int) -> str:
         """Of a system that is heard on a link and was not met: why nothing can be asked of it;
         empty where no autopilot of that number is heard."""
-        if self.slot_of(sysid) is not None or not self.first.hears(sysid, now_ns):
+        if self.slot_of(sysid) is not None or not self.first.roster.hears(sysid, now_ns):
             return ""
         chosen, is_bridge = self._config.target_sysid, self._config.bridge
         station = "bridge" if is_bridge else "station"
@@ -128,6 +128,14 @@ class Vehicles:
         """The same item for every vehicle."""
         return [ForOwner(slot, (item,)) for slot in range(len(self._all))]
 
+    def orbit_samples(self, in_control: int, now_ns: int) -> list[Work]:
+        """The next sample of every orbit that is flown; `in_control` is an operator's number."""
+        return [
+            ForOwner(slot, tuple(vehicle.orbit_sample(in_control, now_ns)))
+            for slot, vehicle in enumerate(self._all)
+            if vehicle.orbits.flown is not None
+        ]
+
     # ------------------------------------------------------------------------------ frames
 
     def passes(self, link: int, frames: Sequence[Frame], now_ns: int) -> list[int]:
@@ -144,10 +152,6 @@ class Vehicles:
             return None
         work = self._all[slot].frames.in_turn(link, frames, now_ns)
         return None if work is None else (slot, work)
-
-    def placed(self, slot: int, frame: Frame, now_ns: int) -> list[Work]:
-        """One of the frames that `in_turn` has counted, of `PLACES`: work of that slot."""
-        return self._all[slot].frames.placed(frame, now_ns)
 
     def counted(self, slot: int, link: int, frame: Frame, now_ns: int) -> list[Work]:
         """One of the frames that `in_turn` has counted."""

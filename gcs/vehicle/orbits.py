@@ -56,9 +56,10 @@ class Orbits:
 
     def __init__(self, times: Times) -> None:
         self._times = times
-        self._asked: dict[int, tuple[int, Orbit]] = {}
+        self.asked: dict[int, tuple[int, Orbit]] = {}
         """By request, those that the gate has not decided on yet: whose, and what."""
-        self._flown: Flown | None = None
+        self.flown: Flown | None = None
+        """The one that is flown now."""
 
     def ask(
         self, asked: AskOrbit, telemetry: Telemetry | None, gate: Gate, policy: Policy, now_ns: int
@@ -72,7 +73,7 @@ class Orbits:
             return [refused, Log(Level.WARNING, NODE, text)]
         work: list[Work] = []
         if orbit is not None:
-            self._asked[asked.request_id] = asked.operator, orbit
+            self.asked[asked.request_id] = asked.operator, orbit
             work.append(Log(Level.INFO, NODE, _in_words(orbit)))
         return [*work, AskGate(asked.request_id, BeginStream())]
 
@@ -89,8 +90,8 @@ class Orbits:
         wanted = _asked_for(asked.ask.orbit or ipc.Circle())
         if isinstance(wanted, Refusal):
             return wanted
-        own = self._flown is not None and self._flown.operator == asked.operator
-        before = self._flown.guidance.orbit if own and self._flown is not None else None
+        own = self.flown is not None and self.flown.operator == asked.operator
+        before = self.flown.guidance.orbit if own and self.flown is not None else None
         orbit = orbit_of(wanted, pos_ned, telemetry.yaw_rad, before, policy.stream)
         if isinstance(orbit, Refusal):
             return orbit
@@ -98,7 +99,7 @@ class Orbits:
 
     def decided(self, told: Verdict, gate: Gate, policy: Policy, now_ns: int) -> None:
         """The gate's verdict on a request: an orbit that it lets begin is flown from now on."""
-        asked = self._asked.pop(told.request_id, None)
+        asked = self.asked.pop(told.request_id, None)
         memory = gate.memory
         if asked is None or told.ruling is not Ruling.ACCEPTED or memory.pos_ned is None:
             return
@@ -106,18 +107,18 @@ class Orbits:
         task = told.request_id if memory.task is None else memory.task.requested.request_id
         braking = policy.braking_of(memory.autopilot)
         guidance = Guidance(orbit, memory.pos_ned, braking, policy.stream)
-        self._flown = Flown(operator, guidance, task, now_ns)
+        self.flown = Flown(operator, guidance, task, now_ns)
 
     def ended(self, request_id: int) -> None:
         """A request is over, and with it the orbit that it has asked for."""
-        if self._flown is not None and self._flown.task == request_id:
-            self._flown = None
+        if self.flown is not None and self.flown.task == request_id:
+            self.flown = None
 
     def streams_itself(self, operator: int) -> list[Work]:
         """This operator sends samples of its own: they are flown instead."""
-        if self._flown is None or self._flown.operator != operator:
+        if self.flown is None or self.flown.operator != operator:
             return []
-        self._flown = None
+        self.flown = None
         text = "given up: its operator streams setpoints of its own"
         return [Log(Level.INFO, NODE, text)]
 
@@ -130,18 +131,18 @@ class Orbits:
         now_ns: int,
     ) -> list[Work]:
         """The next sample, before the gate's own tick; `in_control` is an operator's number."""
-        flown = self._flown
+        flown = self.flown
         if flown is None or telemetry is None or telemetry.pos_ned is None:
             return []
         memory, operator = gate.memory, flown.operator
         if memory.flown_state is not State.STREAMING or memory.streamer != source_of(operator):
-            self._flown = None
+            self.flown = None
             return []
         age_ns = now_ns - telemetry.position_ns
         if age_ns > round(policy.stream.position_age_s * 1e9):
             return []
         if in_control != operator or flown.guidance.done:
-            self._flown = None
+            self.flown = None
             over = Log(Level.INFO, NODE, f"over after {_turns(flown.guidance)}")
             return [over, OrbitSample(operator, None)]
         place = Place(telemetry.pos_ned, telemetry.v_ned, age_ns / 1e9)

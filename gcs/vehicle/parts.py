@@ -1,7 +1,6 @@
 """All that one vehicle has in a session: its parts, what it reports, and what several of them need.
 
-Nothing here decides when a part is asked: `received_frames.py`, `messages.py`,
-`decisions.py` and `vehicle.py` do.
+Nothing here decides when a part is asked: `received_frames.py` and `vehicle.py` do.
 """
 
 from __future__ import annotations
@@ -32,8 +31,7 @@ from gcs.vehicle.parameters.settings import Settings
 from gcs.vehicle.parameters.stop_parameters import StopParameters
 from gcs.vehicle.talk.commands import Commands
 from gcs.vehicle.talk.discovery import Discovery
-from gcs.vehicle.talk.heard_vehicles import Roster
-from gcs.vehicle.talk.liveness import Presence
+from gcs.vehicle.talk.liveness import Presence, Roster
 from gcs.vehicle.talk.px4_events import Events
 from gcs.vehicle.talk.restarts import STEP_NS, Restarts
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -90,16 +88,13 @@ class VehicleParts:
         self.watch = Watch(policy, times)
         self.telemetry: Telemetry | None = None
         """What it reports; None until it is heard."""
+        self.sysid = 0
+        """That of `telemetry`, 0 before it is heard."""
         self.arming_answer = ""
         """What it was told last when it asked whether it may arm."""
         self.mission_paused = False
         """A mission was stopped by a hold, and nothing else was flown since."""
         self.restarts = Restarts(max(STEP_NS, times.real_ns(STEP_NS)))
-
-    @property
-    def sysid(self) -> int:
-        """0 before it is heard."""
-        return self.telemetry.sysid if self.telemetry else 0
 
     @property
     def of(self) -> str:
@@ -168,7 +163,7 @@ class VehicleParts:
         self.discovery.start()
         self.events.start(Address(telemetry.sysid, telemetry.compid))
         work = self.learn(self.settings.start(telemetry, now_ns), telemetry)
-        work += self.returns.start(telemetry, busy=self.missions.busy, now_ns=now_ns)
+        work += self.returns.start(telemetry, busy=self.missions.job is not None, now_ns=now_ns)
         self.fence.start(telemetry, now_ns)
         work += self.with_plans_on_board([], now_ns)
         return work + self.ask_for_missing(telemetry, now_ns)
@@ -180,7 +175,7 @@ class VehicleParts:
         self.commands = Commands(self.own, self.times)
         self.control = VehicleControl(self.own)
         self.watch = Watch(self._policy, self.times)
-        self.telemetry = None
+        self.telemetry, self.sysid = None, 0
         return work
 
     def with_plans_on_board(self, work: list[Work], now_ns: int) -> list[Work]:
@@ -188,7 +183,7 @@ class VehicleParts:
         telemetry = self.telemetry
         if telemetry is None:
             return work
-        jobs, busy = tuple(work), self.missions.busy
+        jobs, busy = tuple(work), self.missions.job is not None
         rally = self.returns.follow(jobs, telemetry, busy=busy or self.fence.reading, now_ns=now_ns)
         busy |= self.returns.reading
         fence = self.fence.follow(jobs, telemetry, busy=busy, now_ns=now_ns)
@@ -196,7 +191,7 @@ class VehicleParts:
 
     def wake_plans_on_board(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
         """A wait for rally points or fence may be over."""
-        busy = self.missions.busy
+        busy = self.missions.job is not None
         rally = self.returns.wake(telemetry, busy=busy or self.fence.reading, now_ns=now_ns)
         busy |= self.returns.reading
         fence = self.fence.wake(telemetry, busy=busy, now_ns=now_ns)

@@ -188,7 +188,7 @@ class Fleet(BridgedFlight):
                 lambda n: (
                     self.state_of(n) is State.GROUNDED
                     and self.vehicles[n].armable
-                    and bool(self.met(n).fence_shapes)
+                    and bool(self.met(n).port.fence_shapes)
                 )
             )
         )

@@ -57,7 +57,7 @@ def test_each_vehicle_gets_its_own_plan_at_the_same_time() -> None:
     flight.all_connected()
     plans = {1: mission("px4", (10, 0, 10)), 2: mission("px4", (0, 40, 10), (10, 40, 10))}
     assert brings(flight, client, plans) == {1: ACCEPTED, 2: ACCEPTED}
-    assert [flight.met(n).mission_total for n in (1, 2)] == [3, 4]
+    assert [flight.met(n).missions.total for n in (1, 2)] == [3, 4]
     on_board = [len(flight.vehicles[n].plan) for n in (1, 2)]
     assert on_board == [3, 4]
 

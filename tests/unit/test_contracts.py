@@ -77,7 +77,7 @@ def test_a_room_is_pure_where_it_is_not_named(room: str, imports: ImportGraph) -
     [
         ("libraries", "gcs.station.ticks", "mcap"),
         ("libraries", "gcs.gate.machine.step_context", "click"),
-        ("cores", "gcs.vehicle.decisions", "gcs.shell.loop"),
+        ("cores", "gcs.vehicle.vehicle", "gcs.shell.loop"),
         ("cores", "gcs.bridge.routing", "gcs.record.writer"),
         ("cores", "vehicle_sim.services.telemetry.info", "vehicle_sim.shell.runtime"),
         ("wordless", "gcs.gate.machine.gate", "gcs.ipc"),

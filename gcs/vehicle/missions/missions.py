@@ -97,7 +97,8 @@ class Missions:
         self._own = own
         self._times = times
         self._timing = timing_of(times)
-        self._job: Job | None = None
+        self.job: Job | None = None
+        """The one that is under way."""
         self._on_board: OnBoard | None = None
         self._begin_seq: int | None = None
         """The item at which the next start in the air begins, where one was asked for."""
@@ -113,12 +114,7 @@ class Missions:
     @property
     def deadline_ns(self) -> int | None:
         """When a transfer's wait is over."""
-        return self._job.deadline_ns if self._job else None
-
-    @property
-    def busy(self) -> bool:
-        """A job is under way."""
-        return self._job is not None
+        return self.job.deadline_ns if self.job else None
 
     @property
     def items(self) -> int:
@@ -160,7 +156,7 @@ class Missions:
             return [AskGate(request_id, StartMission())]
         if isinstance(job, StartingJob) and autopilot_name(telemetry) == "px4":
             job.not_before_ns = self._taken_ns + self._times.real_ns(PX4_CHECKS_NS)
-        self._job = job
+        self.job = job
         return self._follow(job.start(VehicleView(telemetry, state, policy), now_ns))
 
     def _job_for(
@@ -212,8 +208,8 @@ class Missions:
             return Refusal(Code.OPERATOR_LOST, "the station is leaving")
         if state is State.NO_VEHICLE:
             return Refusal(Code.NO_VEHICLE, "no vehicle is heard")
-        if self._job is not None:
-            return Refusal(Code.BUSY, f"{self._job.asked.word} is still under way")
+        if self.job is not None:
+            return Refusal(Code.BUSY, f"{self.job.asked.word} is still under way")
         if ask.word == "mission_check":
             return self._cannot_check(state, policy)
         if ask.word == "mission_upload" and plan is None and not ask.path:
@@ -241,9 +237,9 @@ class Missions:
 
     def file(self, news: FileRead | FileWritten, view: VehicleView, now_ns: int) -> list[Work]:
         """The answer to a ReadFile or WriteFile of the job under way."""
-        if self._job is None or news.token != self._job.asked.request_id:
+        if self.job is None or news.token != self.job.asked.request_id:
             return []
-        return self._follow(self._job.file(news, view, now_ns))
+        return self._follow(self.job.file(news, view, now_ns))
 
     def heard(self, heard: Heard, view: VehicleView, now_ns: int) -> list[Work]:
         """A message of the vehicle: about progress in flight, or for the transfer under way."""
@@ -263,8 +259,8 @@ class Missions:
                 self._told.forget_refused()  # another one may be on board, of whomever
             case MissionItemReached(seq=seq):
                 work += self._reached(seq)
-        if self._job is not None:
-            work += self._follow(self._job.heard(heard, view, now_ns))
+        if self.job is not None:
+            work += self._follow(self.job.heard(heard, view, now_ns))
         return work
 
     @property
@@ -276,7 +272,7 @@ class Missions:
     def ask_how_many(self, view: VehicleView) -> list[Work]:
         """Ask for the number of items of a vehicle that has told nothing of its mission: a PX4 1.14
         without one sends no MISSION_CURRENT."""
-        if self._told.known or self._job is not None:
+        if self._told.known or self.job is not None:
             return []
         telemetry = view.telemetry
         return [Send(MissionRequestList(telemetry.sysid, telemetry.compid, MissionType.MISSION))]
@@ -300,14 +296,14 @@ class Missions:
         return [log, GateInput(MissionLoaded("", 0))]
 
     def wake(self, view: VehicleView, now_ns: int) -> list[Work]:
-        if self._job is None:
+        if self.job is None:
             return []
-        return self._follow(self._job.wake(view, now_ns))
+        return self._follow(self.job.wake(view, now_ns))
 
     def forget(self) -> list[Work]:
         """The vehicle restarted or was away: nothing is known of what it has on board, and no start
         goes on that stands on what it was asked before."""
-        work = self._follow(self._job.stop()) if isinstance(self._job, StartingJob) else []
+        work = self._follow(self.job.stop()) if isinstance(self.job, StartingJob) else []
         self._told.forget()
         self._begin_seq = None
         if self._on_board is None:
@@ -317,26 +313,26 @@ class Missions:
 
     def stop(self, request_id: int) -> list[Work]:
         """Whoever asked for the transfer `request_id`, somebody stops it, if it is under way."""
-        if self._job is None or self._job.asked.request_id != request_id:
+        if self.job is None or self.job.asked.request_id != request_id:
             return []
-        return self._follow(self._job.stop())
+        return self._follow(self.job.stop())
 
     def overruled(self, given: Input) -> list[Work]:
         """Whatever stops the vehicle stops a mission start, too, that is still being prepared."""
-        if self._job is None or not isinstance(self._job, StartingJob):
+        if self.job is None or not isinstance(self.job, StartingJob):
             return []
         match given:
             case Requested(request=request) if event_of(request) in STOPS:
-                return self._follow(self._job.stop())
+                return self._follow(self.job.stop())
             case OperatorLost():
-                return self._follow(self._job.leave())
+                return self._follow(self.job.leave())
             case _:
                 return []
 
     def leave(self) -> list[Work]:
         """The session ends: the job under way ends with it."""
         self._left = True
-        return [] if self._job is None else self._follow(self._job.leave())
+        return [] if self.job is None else self._follow(self.job.leave())
 
     def _follow(self, job_work: list[JobWork]) -> list[Work]:
         """Keep what a job says about the mission on board; pass on the rest."""
@@ -356,8 +352,8 @@ class Missions:
                 if isinstance(item, AskGate):
                     self._was_active = False
                 work.append(item)
-        if self._job is not None and self._job.over:
-            self._job = None
+        if self.job is not None and self.job.over:
+            self.job = None
         return work
 
     # ----------------------------------------------------------------------------- progress

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from gcs.gate.effects import CommandKind, Level, SendCommand
 from gcs.gate.inputs import CommandEnded
+from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.sentences import result_word
+from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import CannotCommandError, WantedCommand, command_long_for
 from gcs.protocol.command import ACK_WAIT_NS, WORK_WAIT_NS, CommandClient
 from gcs.protocol.effects import (
@@ -28,6 +32,14 @@ from gcs.wire.ids import Result
 from gcs.wire.messages import CommandLong
 
 NODE = "link"
+SHOWN_BY: Final[Mapping[CommandKind, FlightMode]] = {
+    CommandKind.RETURN: FlightMode.RETURN,
+    CommandKind.LAND: FlightMode.LAND,
+    CommandKind.START_MISSION: FlightMode.MISSION,
+    CommandKind.TAKE_OFF: FlightMode.TAKEOFF,
+}
+"""Those after which a flight follows.  Others end with the heartbeat that shows them.  That of an
+ArduCopter which takes off in GUIDED shows nothing."""
 
 NEEDS_PERMIT = frozenset(
     {
@@ -256,3 +268,10 @@ def _above_home_m(telemetry: Telemetry) -> float:
     if telemetry.autopilot.takeoff_above_sea or home_ned is None or pos_ned is None:
         return 0.0
     return home_ned[2] - pos_ned[2]
+
+
+def shown_commands(gate: Gate, mode: FlightMode) -> list[int]:
+    """The requests whose command has no answer yet, which may be lost, while a heartbeat shows
+    the mode that it leads to."""
+    unanswered = gate.memory.outstanding
+    return [request_id for request_id, kind in unanswered if SHOWN_BY.get(kind) is mode]

@@ -185,7 +185,7 @@ def test_a_vehicle_that_was_named_is_meant() -> None:
     assert script.vehicle.listening(script.now_ns), "for its rally points"
     script.hear(wire.no_rally_points(), sender=Sender(2))
     assert not script.vehicle.listening(script.now_ns)
-    assert script.vehicle.heard_vehicles(script.now_ns) == [
+    assert script.vehicle.roster.names(script.now_ns) == [
         "1/1 px4 quadrotor",
         "2/1 px4 quadrotor",
     ]
@@ -387,11 +387,11 @@ def test_losses_are_counted_over_gaps_and_not_over_an_absence() -> None:
     script.hear(wire.heartbeat())
     script.sender.seq += 3
     script.hear(wire.heartbeat())
-    assert script.vehicle.losses.lost == 3
+    assert script.vehicle.presence.losses.lost == 3
     script.wait(10.0)
     script.sender.seq = 100
     script.hear(wire.heartbeat(), wire.heartbeat())
-    assert script.vehicle.losses.lost == 3
+    assert script.vehicle.presence.losses.lost == 3
 
 
 # --------------------------------------------------------------------------- its settings

@@ -87,4 +87,4 @@ def test_it_is_for_the_ground(state: State, code: Code) -> None:
     (refusal,) = [item.refusal for item in work if isinstance(item, GiveVerdict)]
     assert refusal is not None
     assert refusal.code is code
-    assert not missions.busy
+    assert missions.job is None
