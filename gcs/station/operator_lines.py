@@ -58,8 +58,9 @@ def _asked(
     now_ns: int,
 ) -> list[Work]:
     """What is asked of one vehicle."""
-    autopilot, refusal = vehicles.known(owner, now_ns)
+    refusal = vehicles.refusal(owner, now_ns)
     telemetry = None if owner == STATION else vehicles.of_owner(owner).telemetry
+    autopilot = None if telemetry is None else telemetry.autopilot
     held = None
     if bridge is not None and telemetry is not None:
         vehicle = Address(telemetry.sysid, telemetry.compid)

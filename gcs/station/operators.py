@@ -230,10 +230,11 @@ class Operators:
     def _without_streams(self, operator: int, given: list[Work], now_ns: int) -> list[Work]:
         """`operator` is given control: the stream of whoever had it is over, and not only when it
         has been silent for a while."""
-        others = self._streams.others(operator, now_ns) if given else []
+        if not given:
+            return []
         ends = [
             StreamOver(vehicle, self._requests.open(_end_of_stream(vehicle), other))
-            for other, vehicle in others
+            for other, vehicle in self._streams.others(operator, now_ns)
         ]
         return [*ends, *given]
 

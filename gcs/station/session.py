@@ -378,8 +378,9 @@ class Session:
             case OrbitSample(operator, sample):
                 if sample is None:
                     return self._operators.end_stream(operator, vehicle.sysid)
-                autopilot, refusal = vehicle.for_operators(now_ns)
-                return self._operators.line(operator, sample, autopilot, refusal, now_ns)
+                # A sample needs no autopilot's words.
+                refusal = vehicle.refusal(now_ns)
+                return self._operators.line(operator, sample, None, refusal, now_ns)
             case StopTransfer(request_id):
                 return self._vehicles.each(lambda each: each.missions.stop(request_id))
             case StreamOver(sysid, request_id):

@@ -16,7 +16,6 @@ from gcs.gate import inputs
 from gcs.gate.effects import Level
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
-from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
 from gcs.session.speedup_waits import Times
 from gcs.session.work import STATION, ForOwner, GateInput, Log, Work
@@ -228,10 +227,10 @@ class Vehicles:
         slot = self.slot_of(sysid) if sysid else FIRST
         return STATION if slot is None else slot
 
-    def known(self, owner: int, now_ns: int) -> tuple[Autopilot | None, Refusal | None]:
-        """The vehicle's autopilot, None before it is heard; and why nothing at all can be asked of
-        it, as of one that is not there (the station's)."""
+    def refusal(self, owner: int, now_ns: int) -> Refusal | None:
+        """Why nothing at all can be asked of the vehicle, as of one that is not there (the
+        station's)."""
         if owner != STATION:
-            return self._all[owner].for_operators(now_ns)
+            return self._all[owner].refusal(now_ns)
         there = ", ".join(str(address.sysid) for address in self.addresses) or "none"
-        return None, Refusal(Code.NO_VEHICLE, f"no such vehicle is heard here; there are: {there}")
+        return Refusal(Code.NO_VEHICLE, f"no such vehicle is heard here; there are: {there}")

@@ -185,7 +185,7 @@ class VehicleParts:
             return work
         jobs, busy = tuple(work), self.missions.job is not None
         rally = self.returns.follow(jobs, telemetry, busy=busy or self.fence.reading, now_ns=now_ns)
-        busy |= self.returns.reading
+        busy |= self.returns.rally.reading
         fence = self.fence.follow(jobs, telemetry, busy=busy, now_ns=now_ns)
         return [*work, *rally, *fence, *self.look_at_fence(telemetry)]
 
@@ -193,7 +193,7 @@ class VehicleParts:
         """A wait for rally points or fence may be over."""
         busy = self.missions.job is not None
         rally = self.returns.wake(telemetry, busy=busy or self.fence.reading, now_ns=now_ns)
-        busy |= self.returns.reading
+        busy |= self.returns.rally.reading
         fence = self.fence.wake(telemetry, busy=busy, now_ns=now_ns)
         return [*rally, *fence, *self.look_at_fence(telemetry)]
 

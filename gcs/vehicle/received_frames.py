@@ -19,6 +19,7 @@ from gcs.session import announcements
 from gcs.session.effects import Record
 from gcs.session.work import GateInput, Log, PlaceFence, Work
 from gcs.vehicle import record_items
+from gcs.vehicle.health.limit_monitors import WATCH_MESSAGES
 from gcs.vehicle.health.position_latency import Delay
 from gcs.vehicle.interpreted_messages import (
     CAMERA_MESSAGES,
@@ -188,7 +189,7 @@ class VehicleFrames:
             work += parts.events.heard(heard, now_ns)
         if heard.compid != telemetry.compid and type(message) not in CAMERA_MESSAGES:
             return work
-        if heard.compid == telemetry.compid:
+        if type(message) in WATCH_MESSAGES and heard.compid == telemetry.compid:
             work += parts.watch.heard(message, now_ns)
         return [*work, *self._updated(telemetry, message, now_ns), *accuracy(telemetry)]
 

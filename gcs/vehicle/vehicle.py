@@ -19,7 +19,6 @@ from gcs.gate.machine.gate import Gate
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
-from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address, Send
 from gcs.report import SetpointItem
 from gcs.session import announcements
@@ -69,7 +68,7 @@ class Vehicle(VehicleParts):
     @property
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
-        talking = (self.commands, self.settings, self.missions, self.returns, self.fence)
+        talking = (self.commands, self.settings, self.missions, self.returns.rally, self.fence)
         waiting = (*talking, self.words, self.events, self.reasons)
         times = [part.deadline_ns for part in waiting]
         return min((time for time in times if time is not None), default=None)
@@ -109,13 +108,13 @@ class Vehicle(VehicleParts):
     @property
     def plan_transfer(self) -> bool:
         """The station reads or writes a plan of the vehicle, or is about to."""
-        return self.missions.job is not None or self.returns.reading or self.fence.reading
+        return self.missions.job is not None or self.returns.rally.reading or self.fence.reading
 
     @property
     def not_on_board(self) -> tuple[MissionType, ...]:
         """Of which plans, fence and rally points, it was read that there are none."""
         fence = (MissionType.FENCE,) if self.fence.none_on_board else ()
-        return (*fence, MissionType.RALLY) if self.returns.none_on_board else fence
+        return (*fence, MissionType.RALLY) if self.returns.rally.none_on_board else fence
 
     # --------------------------------------------------------------------------------- time
 
@@ -194,18 +193,13 @@ class Vehicle(VehicleParts):
             return Refusal(Code.UNSUPPORTED_VEHICLE, sentence)
         return refusal
 
-    def for_operators(self, now_ns: int) -> tuple[Autopilot | None, Refusal | None]:
-        """Its autopilot, None before it is heard; and why nothing at all can be asked of it."""
-        telemetry = self.telemetry
-        return telemetry.autopilot if telemetry else None, self.refusal(now_ns)
-
     def listening(self, now_ns: int) -> bool:
         """Whether it may still turn out that there are several vehicles (one of our own is alone),
         or the return height or rally points, which a return needs, are still on their way."""
         several = self.config.sim is None and self.roster.listening(now_ns)
         if several or self.telemetry is None:
             return several
-        return not self.telemetry.return_told or self.returns.first_time
+        return not self.telemetry.return_told or not self.returns.rally.answered
 
     def ask_mission(self, asked: AskMission, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+from gcs.enu_text import place
 from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.clearance import (
     NO_MARGINS,
@@ -148,13 +149,14 @@ class FenceCheck:
 
     def outside(
         self,
-        subject: str,
+        what: str,
         pos_ned: Vec3,
         *,
         floor_applies: bool,
         allow: Margins = NO_MARGINS,
     ) -> Refusal | None:
-        """Refuses a point that is outside by more than `allow`.  No margin is asked for.
+        """Refuses a point that is outside by more than `allow`.  No margin is asked for.  It is
+        called `what` and its place, in words that are made for a refusal only.
 
         Where the policy's slack is larger than its margin and position error together (as in the
         lab), a point may be outside by the difference.
@@ -163,6 +165,7 @@ class FenceCheck:
         for zone in self.zones:
             for measure in self._point_measures(zone, here, floor_applies, NO_MARGINS):
                 if not measure.least_m >= self._outermost(measure.face) - allow.of(measure.face):
+                    subject = f"{what} {place(pos_ned)}"
                     return zone_refusal(subject, measure, 0.0, leg=False)
         return None
 

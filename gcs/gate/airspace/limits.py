@@ -30,9 +30,11 @@ def not_finite(values: Mapping[str, Sequence[float]]) -> Refusal | None:
 
 def beyond_reach(pos_ned: Vec3, v_ned: Vec3 = STANDING) -> Refusal | None:
     """Refuses numbers too large for the geometry and for the stopping distance to be exact."""
-    if not all(abs(x) <= REACH_M for x in pos_ned):
+    north, east, down = pos_ned
+    if not (abs(north) <= REACH_M and abs(east) <= REACH_M and abs(down) <= REACH_M):
         return Refusal(Code.TOO_FAR, f"a position beyond {REACH_M / 1000:.0f} km of the origin")
-    if not all(abs(v) <= FASTEST_M_S for v in v_ned):
+    v_n, v_e, v_d = v_ned
+    if not (abs(v_n) <= FASTEST_M_S and abs(v_e) <= FASTEST_M_S and abs(v_d) <= FASTEST_M_S):
         return Refusal(Code.CANNOT_STOP, f"a velocity beyond {FASTEST_M_S:.0f} m/s")
     return None
 

@@ -95,6 +95,11 @@ class PlanOnBoard:
         """A transfer for this is under way."""
         return self._download is not None and not self._overheard
 
+    @property
+    def none_on_board(self) -> bool:
+        """They were read, and there is none."""
+        return self.items == ()
+
     def start(self, telemetry: Telemetry, now_ns: int) -> None:
         """The vehicle appeared: nothing is known of it.  `follow` begins to read."""
         self._number = self._total = None

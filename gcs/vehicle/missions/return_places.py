@@ -44,52 +44,32 @@ class ReturnPlaces:
 
     def __init__(self, own: Address, times: Times, policy: Policy) -> None:
         self._policy = policy
-        self._rally = PlanOnBoard(own, times, MissionType.RALLY)
+        self.rally = PlanOnBoard(own, times, MissionType.RALLY)
         self._return_type: int | None = None
         self._told: ReturnPlacesSeen | None = None
         self._warned: frozenset[str] = frozenset()
         """The rally points on board, by name, of which it was told that they are outside."""
 
-    @property
-    def deadline_ns(self) -> int | None:
-        """When an answer is overdue, or they are to be read again."""
-        return self._rally.deadline_ns
-
-    @property
-    def reading(self) -> bool:
-        """A transfer for this is under way."""
-        return self._rally.reading
-
-    @property
-    def none_on_board(self) -> bool:
-        """They were read, and there is none."""
-        return self._rally.items == ()
-
-    @property
-    def first_time(self) -> bool:
-        """They were not told yet, since the vehicle appeared."""
-        return not self._rally.answered
-
     def start(self, telemetry: Telemetry, *, busy: bool, now_ns: int) -> list[Work]:
         """The vehicle appeared: nothing is known of it.  `busy`: a job transfers a plan."""
         self._return_type = None
-        self._rally.start(telemetry, now_ns)
+        self.rally.start(telemetry, now_ns)
         return [*self._tell(telemetry), *self.follow((), telemetry, busy=busy, now_ns=now_ns)]
 
     def follow(
         self, work: Iterable[Work], telemetry: Telemetry, *, busy: bool, now_ns: int
     ) -> list[Work]:
         """What the jobs send may change the rally points, or ask for them."""
-        asked = self._rally.follow(work, telemetry, busy=busy, now_ns=now_ns)
+        asked = self.rally.follow(work, telemetry, busy=busy, now_ns=now_ns)
         return [*self._tell(telemetry), *asked]
 
     def heard(self, heard: Heard, telemetry: Telemetry, now_ns: int) -> list[Work]:
         """A mission message or parameter of the vehicle; before the jobs hear it."""
-        work = self._rally.heard(heard, telemetry, now_ns)
+        work = self.rally.heard(heard, telemetry, now_ns)
         return [*work, *self._tell(telemetry)]
 
     def wake(self, telemetry: Telemetry, *, busy: bool, now_ns: int) -> list[Work]:
-        work = self._rally.wake(telemetry, busy=busy, now_ns=now_ns)
+        work = self.rally.wake(telemetry, busy=busy, now_ns=now_ns)
         return [*work, *self._tell(telemetry)]
 
     def returns_by(self, return_type: int | None, telemetry: Telemetry) -> list[Work]:
@@ -103,11 +83,11 @@ class ReturnPlaces:
 
     def placed(self, telemetry: Telemetry) -> list[Work]:
         """Home or the origin has changed."""
-        return self._tell(telemetry) if self._rally.items else []
+        return self._tell(telemetry) if self.rally.items else []
 
     def changed(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
         """They may be others from now on."""
-        self._rally.changed(now_ns)
+        self.rally.changed(now_ns)
         return self._tell(telemetry)
 
     def _tell(self, telemetry: Telemetry) -> list[Work]:
@@ -123,7 +103,7 @@ class ReturnPlaces:
     def _outside(self, telemetry: Telemetry) -> list[Work]:
         """Said once of each rally point where the policy lets nobody land: the vehicle's own
         failsafe may return there, which no ground station can stop."""
-        items = self._rally.items
+        items = self.rally.items
         if not items:
             self._warned = frozenset()
             return []
@@ -139,9 +119,9 @@ class ReturnPlaces:
         return work
 
     def _seen(self, telemetry: Telemetry) -> ReturnPlacesSeen:
-        items = self._rally.items
+        items = self.rally.items
         if items is None:
-            return ReturnPlacesSeen(None, self._rally.failure or READING)
+            return ReturnPlacesSeen(None, self.rally.failure or READING)
         if telemetry.return_void:
             return ReturnPlacesSeen(None, HEIGHT)
         if telemetry.autopilot.name == "px4":

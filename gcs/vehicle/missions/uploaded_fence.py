@@ -7,7 +7,7 @@ mission protocol (MISSION_TYPE_FENCE), whoever has put them on board.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -17,9 +17,8 @@ from gcs.plan.errors import PlanError
 from gcs.plan.formats.fence_items import split_fence
 from gcs.plan.model import Circle, LatLon, Zone
 from gcs.plan.wire import WireItem, items_from_wire
-from gcs.protocol.effects import Address, Heard
+from gcs.protocol.effects import Address
 from gcs.session.speedup_waits import Times
-from gcs.session.work import Work
 from gcs.vehicle.missions.plan_on_board import PlanOnBoard
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import MissionType
@@ -68,52 +67,19 @@ _Facts: TypeAlias = tuple[tuple[WireItem, ...], Origin | None, Vec3 | None]
 """What it is worked out from."""
 
 
-class FenceOnBoard:
+class FenceOnBoard(PlanOnBoard):
     """Reads the uploaded fence of one vehicle."""
 
     def __init__(self, own: Address, times: Times) -> None:
-        self._plan = PlanOnBoard(own, times, MissionType.FENCE)
+        super().__init__(own, times, MissionType.FENCE)
         self._known_from: _Facts | None = None
         self._known = NO_FENCE
 
-    @property
-    def deadline_ns(self) -> int | None:
-        """When an answer is overdue, or it is to be read again."""
-        return self._plan.deadline_ns
-
-    @property
-    def reading(self) -> bool:
-        """A transfer for this is under way."""
-        return self._plan.reading
-
-    @property
-    def none_on_board(self) -> bool:
-        """It was read, and has no item."""
-        return self._plan.items == ()
-
-    def start(self, telemetry: Telemetry, now_ns: int) -> None:
-        """The vehicle appeared: nothing is known of it.  `follow` begins to read."""
-        self._plan.start(telemetry, now_ns)
-
-    def follow(
-        self, work: Iterable[Work], telemetry: Telemetry, *, busy: bool, now_ns: int
-    ) -> list[Work]:
-        """What the jobs send may change it; `busy`: another plan is transferred."""
-        return self._plan.follow(work, telemetry, busy=busy, now_ns=now_ns)
-
-    def heard(self, heard: Heard, telemetry: Telemetry, now_ns: int) -> list[Work]:
-        """A mission message or parameter of the vehicle; before the jobs hear it."""
-        return self._plan.heard(heard, telemetry, now_ns)
-
-    def wake(self, telemetry: Telemetry, *, busy: bool, now_ns: int) -> list[Work]:
-        """`deadline_ns` has passed."""
-        return self._plan.wake(telemetry, busy=busy, now_ns=now_ns)
-
     def seen(self, telemetry: Telemetry) -> UploadedFence:
         """What is known of it now."""
-        items = self._plan.items
+        items = self.items
         if items is None:
-            return UploadedFence(unreadable=self._plan.failure)
+            return UploadedFence(unreadable=self.failure)
         facts = (items, telemetry.origin, telemetry.home_ned)
         if facts != self._known_from:
             self._known_from, self._known = facts, uploaded_fence(items, telemetry)

@@ -315,7 +315,7 @@ class TestPoints:
         refusal = judge(YARD).outside("it", at(103, 40, 15), floor_applies=True)
         assert refusal == Refusal(
             Code.OUTSIDE_FENCE,
-            "it is 3.0 m outside inclusion polygon 'yard'",
+            "it (103.00 E, 40.00 N, 15.00 U) is 3.0 m outside inclusion polygon 'yard'",
             (("outside_m", 3.0), ("margin_m", 0.0)),
             "yard",
         )

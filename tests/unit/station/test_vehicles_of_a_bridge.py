@@ -191,8 +191,7 @@ def test_a_request_without_a_vehicle_is_for_the_first() -> None:
     for sysid in (7, 3):
         fleet.hear(heartbeat(sysid))
     assert [fleet.vehicles.owner_for(sysid) for sysid in (0, 7, 3, 9)] == [0, 0, 1, STATION]
-    autopilot, refusal = fleet.vehicles.known(STATION, 1)
-    assert autopilot is None
+    refusal = fleet.vehicles.refusal(STATION, 1)
     assert refusal is not None
     assert refusal.code is Code.NO_VEHICLE
     assert "7, 3" in refusal.sentence

@@ -110,7 +110,7 @@ class Script:
 
     def run(self, seconds: float, *, heard: bool = True) -> None:
         until_ns = self.now_ns + round(seconds * SECOND)
-        while (due_ns := self.part.deadline_ns) is not None and due_ns <= until_ns:
+        while (due_ns := self.part.rally.deadline_ns) is not None and due_ns <= until_ns:
             self.now_ns = max(self.now_ns, due_ns)
             if heard:
                 self.telemetry.heard_ns = self.now_ns
@@ -121,7 +121,7 @@ class Script:
         self.work += work
 
     def first_time(self) -> bool:
-        return self.part.first_time
+        return not self.part.rally.answered
 
     @property
     def told(self) -> list[ReturnPlacesSeen]:
@@ -145,7 +145,7 @@ def test_a_vehicle_without_points_returns_home_alone() -> None:
     assert script.told == [UNKNOWN, NOWHERE_ELSE]
     assert script.sent == ["MissionRequestList", "MissionAck"]
     assert not script.first_time()
-    assert script.part.deadline_ns is None
+    assert script.part.rally.deadline_ns is None
     assert script.said == []
 
 
@@ -297,7 +297,7 @@ def test_a_job_that_brings_points_makes_them_unknown_until_it_has_read_them_back
     script.busy = True
     script.jobs(count(1))
     assert script.told[-1] == UNKNOWN
-    assert script.part.deadline_ns is None, "the job transfers"
+    assert script.part.rally.deadline_ns is None, "the job transfers"
     script.hear(ack(MissionResult.ACCEPTED))
     script.jobs(MissionRequestList(target_system=1, target_component=1, mission_type=RALLY))
     asked = len(script.sent)
@@ -330,7 +330,7 @@ def test_a_job_goes_first() -> None:
     assert script.sent == ["MissionRequestList"]
     script.busy = True
     script.jobs()
-    assert not script.part.reading
+    assert not script.part.rally.reading
     script.hear(count(0))
     assert script.told[-1] == UNKNOWN
     script.busy = False

@@ -31,13 +31,16 @@ def hold_point(
     refusal = bounds.unusable(position=pos_ned, velocity=v_ned)
     if refusal is not None:
         return refusal
-    judge, subject = bounds.judge, f"position {place(pos_ned)}"
+    judge = bounds.judge
     refusal = (
         bounds.beyond_limits(
-            subject, pos_ned, allow=bounds.position_error, floor_applies=floor_applies
+            f"position {place(pos_ned)}",
+            pos_ned,
+            allow=bounds.position_error,
+            floor_applies=floor_applies,
         )
         or beyond_reach(pos_ned, v_ned)
-        or judge.outside(subject, pos_ned, floor_applies=floor_applies)
+        or judge.outside("position", pos_ned, floor_applies=floor_applies)
         or cannot_stop(bounds, pos_ned, v_ned, None, floor_applies=floor_applies)
         or cannot_stop_gained(bounds, pos_ned, gained_ned, floor_applies=floor_applies)
     )
@@ -52,7 +55,7 @@ def start(bounds: Bounds, pos_ned: Vec3) -> Refusal | None:
     return (
         bounds.unusable(position=pos_ned)
         or beyond_reach(pos_ned)
-        or bounds.judge.outside(f"start position {place(pos_ned)}", pos_ned, floor_applies=False)
+        or bounds.judge.outside("start position", pos_ned, floor_applies=False)
     )
 
 
@@ -65,7 +68,6 @@ def outside(bounds: Bounds, pos_ned: Vec3, *, for_certain: bool) -> Refusal | No
     if not all(map(math.isfinite, pos_ned)):
         return None
     allow = bounds.position_error if for_certain else NO_MARGINS
-    subject = f"position {place(pos_ned)}"
     return beyond_reach(pos_ned) or bounds.judge.outside(
-        subject, pos_ned, floor_applies=False, allow=allow
+        "position", pos_ned, floor_applies=False, allow=allow
     )
