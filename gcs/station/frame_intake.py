@@ -98,9 +98,9 @@ class Incoming:
             and not self._signatures.signed(link)
         ):
             return self._from_vehicles(link, given.frames, given.frames, now_ns)
-        announced = pieces(link, len(items), self._links.rest(link))
-        if announced:
-            run(announced, now_ns)
+        rest = self._links.rest(link)
+        if rest or not items:
+            run(pieces(link, len(items), rest), now_ns)
         taken = self._taken(link, items, now_ns)
         if not self.of_client(given):
             frames = [item for item in taken if not isinstance(item, GarbageItem)]

@@ -90,8 +90,8 @@ class Vehicles:
     @property
     def deadline_ns(self) -> int | None:
         """When some part of some vehicle waits no longer."""
-        times = (vehicle.deadline_ns for vehicle in self._all)
-        return min((time_ns for time_ns in times if time_ns is not None), default=None)
+        times = [time for vehicle in self._all if (time := vehicle.deadline_ns) is not None]
+        return min(times, default=None)
 
     def heard_names(self, now_ns: int) -> list[str]:
         """The names of all that are heard."""

@@ -131,9 +131,7 @@ def attachment_name(path: str, data: bytes) -> str:
 
 
 def pieces(link: int, items: int, rest: bytes) -> Sequence[Effect]:
-    """How a datagram was cut, where that does not show in what is recorded of it."""
-    if items and not rest:
-        return ()
+    """How a datagram was cut, of which nothing or not all shows in what is recorded of it."""
     # `rest` may be the beginning of a SETUP_SIGNING, whose key is in no record.
     return (Record(InputItem.of("Datagram", Pieces(link, items, without_keys(rest)))),)
 

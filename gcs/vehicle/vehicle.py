@@ -70,8 +70,8 @@ class Vehicle(VehicleParts):
         """When some part's wait is over; the gate itself lives on ticks."""
         talking = (self.commands, self.settings, self.missions, self.returns.rally, self.fence)
         waiting = (*talking, self.words, self.events, self.reasons)
-        times = [part.deadline_ns for part in waiting]
-        return min((time for time in times if time is not None), default=None)
+        times = [time for part in waiting if (time := part.deadline_ns) is not None]
+        return min(times, default=None)
 
     @property
     def gate(self) -> Gate:

@@ -15,7 +15,7 @@ from typing import Any
 from unittest import mock
 
 from gcs import ipc
-from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.questions.back_inside import WayBack
 from gcs.gate.airspace.questions.braking import Breach
 from gcs.gate.airspace.verifier import Verifier

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.bounds import STANDING
 from gcs.gate.airspace.stopping import OnWayBack, OwnPath, Path, Setpoints, StopBy
 from gcs.gate.condition import Severity
 from gcs.gate.effects import CommandKind, Outcome, OutcomeKind, Transition

@@ -34,9 +34,8 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.bounds import Bounds
+from gcs.gate.airspace.bounds import STANDING, Bounds
 from gcs.gate.airspace.fence_check import Slack
-from gcs.gate.airspace.limits import STANDING
 from gcs.gate.airspace.stopping import travel_m
 from gcs.gate.policy.policy import Pace
 

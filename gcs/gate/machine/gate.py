@@ -113,7 +113,7 @@ class Gate:
     @property
     def conditions(self) -> tuple[Condition, ...]:
         """The active conditions."""
-        return tuple(condition for condition, _ in self._step.memory.conditions)
+        return tuple([condition for condition, _ in self._step.memory.conditions])
 
     @property
     def reasons(self) -> tuple[tuple[Condition, str], ...]:

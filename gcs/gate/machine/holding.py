@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from gcs.enu_text import place
-from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.bounds import STANDING
 from gcs.gate.airspace.stopping import StopBy
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine import verifying

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.bounds import STANDING
 from gcs.gate.machine.memory import SECOND_NS
 from gcs.gate.machine.step_context import StepContext
 

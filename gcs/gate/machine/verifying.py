@@ -13,8 +13,7 @@ from typing import Final
 from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis, lean_of
-from gcs.gate.airspace.cleared import Cleared
-from gcs.gate.airspace.limits import STANDING
+from gcs.gate.airspace.bounds import STANDING, Cleared
 from gcs.gate.airspace.questions.back_inside import WayBack
 from gcs.gate.airspace.stream_samples import TICK_S, StreamSample
 from gcs.gate.airspace.verifier import Verifier

@@ -11,8 +11,8 @@ import pytest
 from msgspec.structs import replace
 
 from gcs.frames import Vec3
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.clearance import Motion
-from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import TOLERANCE_M, Circle
 from gcs.gate.policy.parse import DEFAULT

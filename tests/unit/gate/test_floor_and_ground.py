@@ -9,7 +9,7 @@ import pytest
 from msgspec.structs import replace
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.airspace.zones import Zone

@@ -10,15 +10,15 @@ import math
 import pytest
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.clearance import NO_MARGINS, Margins
-from gcs.gate.airspace.cleared import Cleared
-from gcs.gate.airspace.limits import (
+from gcs.gate.airspace.bounds import (
     FASTEST_M_S,
     STANDING,
-    beyond_limits,
+    Bounds,
+    Cleared,
     beyond_reach,
     not_finite,
 )
+from gcs.gate.airspace.clearance import NO_MARGINS, Margins
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.geometry import REACH_M
 from gcs.gate.policy.parse import DEFAULT
@@ -37,7 +37,8 @@ def limits(
 ) -> Refusal | None:
     """The verdict on a place so far from home."""
     pos_ned = (HOME[0] + north, HOME[1] + east, HOME[2] - up)
-    return beyond_limits(DEFAULT, HOME, "it", pos_ned, allow=allow, floor_applies=floor)
+    bounds = Bounds(DEFAULT, (), "px4", HOME, origin_known=True)
+    return bounds.beyond_limits("it", pos_ned, allow=allow, floor_applies=floor)
 
 
 def code(refusal: Refusal | None) -> Code | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.projection import Origin, Projection
 from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.policy.parse import parse_policy

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon
 from gcs.gate.refusal import Code, Refusal

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.verifier import Verifier
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import Circle, Polygon, polygon_fault

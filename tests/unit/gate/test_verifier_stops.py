@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcs.frames import enu_from_ned
-from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.questions.braking import Breach
 from gcs.gate.airspace.stopping import Setpoints
 from gcs.gate.airspace.zones import Zone

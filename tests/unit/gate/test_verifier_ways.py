@@ -7,7 +7,7 @@ import math
 from msgspec import structs
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.projection import Origin
 from gcs.gate.airspace.verifier import Verifier, check_start, verifier_for
 from gcs.gate.airspace.zones import Zone

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from msgspec import structs
 
-from gcs.gate.airspace.cleared import Cleared
+from gcs.gate.airspace.bounds import Cleared
 from gcs.gate.airspace.stream_samples import StreamSample
 from gcs.gate.airspace.verifier import Verifier, verifier_for
 from gcs.gate.policy.parse import DEFAULT

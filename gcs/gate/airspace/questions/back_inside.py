@@ -8,9 +8,7 @@ from typing import Final
 
 from gcs.enu_text import fixed, place
 from gcs.frames import Vec3, enu_from_ned, ned_from_enu
-from gcs.gate.airspace.bounds import Bounds
-from gcs.gate.airspace.cleared import clearance_numbers
-from gcs.gate.airspace.limits import beyond_reach
+from gcs.gate.airspace.bounds import Bounds, beyond_reach, clearance_numbers
 from gcs.gate.airspace.stopping import stop_point
 from gcs.gate.geometry import Point, along
 from gcs.gate.refusal import Code, Refusal

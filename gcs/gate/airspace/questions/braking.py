@@ -7,9 +7,7 @@ from functools import cached_property
 from typing import Final
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.bounds import Bounds
-from gcs.gate.airspace.cleared import Cleared
-from gcs.gate.airspace.limits import STANDING, beyond_reach
+from gcs.gate.airspace.bounds import STANDING, Bounds, Cleared, beyond_reach
 from gcs.gate.airspace.prediction import bad_stop
 from gcs.gate.airspace.questions.back_inside import leaves_way_back
 from gcs.gate.airspace.questions.positions import hold_point

@@ -8,11 +8,10 @@ from typing import Final
 
 from gcs.enu_text import place
 from gcs.frames import Vec3
-from gcs.gate.airspace.bounds import Bounds
+from gcs.gate.airspace.bounds import Bounds, beyond_reach
 from gcs.gate.airspace.clearance import Margins
 from gcs.gate.airspace.explain import metres
 from gcs.gate.airspace.fence_check import FenceCheck
-from gcs.gate.airspace.limits import beyond_reach
 from gcs.gate.geometry import TOLERANCE_M
 from gcs.gate.refusal import Code, Refusal
 

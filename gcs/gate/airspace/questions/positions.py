@@ -7,10 +7,8 @@ from collections.abc import Sequence
 
 from gcs.enu_text import place
 from gcs.frames import Vec3
-from gcs.gate.airspace.bounds import Bounds
+from gcs.gate.airspace.bounds import Bounds, Cleared, beyond_reach, clearance_numbers
 from gcs.gate.airspace.clearance import NO_MARGINS
-from gcs.gate.airspace.cleared import Cleared, clearance_numbers
-from gcs.gate.airspace.limits import beyond_reach
 from gcs.gate.airspace.prediction import cannot_stop, cannot_stop_gained, stopping_numbers
 from gcs.gate.refusal import Refusal
 

@@ -6,10 +6,8 @@ import math
 from collections.abc import Sequence
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.bounds import Bounds
+from gcs.gate.airspace.bounds import Bounds, Cleared, beyond_reach, clearance_numbers
 from gcs.gate.airspace.clearance import NO_MARGINS
-from gcs.gate.airspace.cleared import Cleared, clearance_numbers
-from gcs.gate.airspace.limits import beyond_reach
 from gcs.gate.airspace.return_place import HOME, ReturnPlace
 from gcs.gate.refusal import Code, Refusal
 

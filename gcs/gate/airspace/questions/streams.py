@@ -11,11 +11,9 @@ from dataclasses import replace
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis, flies_too_fast
-from gcs.gate.airspace.bounds import Bounds
+from gcs.gate.airspace.bounds import Bounds, Cleared, beyond_reach
 from gcs.gate.airspace.clearance import Margins
-from gcs.gate.airspace.cleared import Cleared
 from gcs.gate.airspace.explain import metres
-from gcs.gate.airspace.limits import beyond_reach
 from gcs.gate.airspace.prediction import stopping_numbers
 from gcs.gate.airspace.questions import goals
 from gcs.gate.airspace.stream_samples import (
