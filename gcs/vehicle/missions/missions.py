@@ -39,11 +39,11 @@ from gcs.vehicle.missions.jobs.job import (
 )
 from gcs.vehicle.missions.jobs.set_current import SetCurrent, flown_by_mode
 from gcs.vehicle.missions.jobs.start import Start
-from gcs.vehicle.missions.jobs.starting import StartingJob, first_item
+from gcs.vehicle.missions.jobs.starting import StartingJob
 from gcs.vehicle.missions.jobs.upload import ClientUpload, Upload
 from gcs.vehicle.missions.jobs.verify_on_board import Adopt
 from gcs.vehicle.missions.mission_current import MissionTold
-from gcs.vehicle.missions.paths import autopilot_name, is_placed
+from gcs.vehicle.missions.paths import autopilot_name, first_item, is_placed
 from gcs.vehicle.missions.plans import OnBoard
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import Cmd, MissionResult, MissionState, MissionType

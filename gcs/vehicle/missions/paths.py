@@ -26,6 +26,11 @@ def autopilot_name(telemetry: Telemetry) -> AutopilotName:
     return name
 
 
+def first_item(telemetry: Telemetry) -> int:
+    """The first item that is flown; ardupilot keeps home as item 0."""
+    return 1 if autopilot_name(telemetry) == "ardupilot" else 0
+
+
 def is_placed(telemetry: Telemetry) -> bool:
     """Whether it is known where the vehicle's local frame and its home are on Earth."""
     known = (telemetry.origin, telemetry.home, telemetry.home_ned)

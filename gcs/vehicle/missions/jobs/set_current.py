@@ -14,7 +14,8 @@ from gcs.protocol.effects import Address
 from gcs.protocol.mission_rewind import MissionRewind
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.vehicle.missions.jobs.job import Asked, BeginsAt, Job, JobWork, VehicleView
-from gcs.vehicle.missions.jobs.starting import first_item, shown_for
+from gcs.vehicle.missions.jobs.starting import shown_for
+from gcs.vehicle.missions.paths import first_item
 from gcs.vehicle.missions.plans import OnBoard
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.messages import MissionItemInt

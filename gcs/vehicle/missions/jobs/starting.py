@@ -30,7 +30,7 @@ from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.work import AskGate, GateInput
 from gcs.vehicle.missions.jobs.job import Asked, JobWork, VehicleView, code_of
 from gcs.vehicle.missions.jobs.verified import VerifiedJob
-from gcs.vehicle.missions.paths import autopilot_name
+from gcs.vehicle.missions.paths import first_item
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import Cmd
 from gcs.wire.messages import MissionItemInt
@@ -194,11 +194,6 @@ def _place(telemetry: Telemetry) -> _Place:
         telemetry.origin,
         telemetry.landed is LandedState.ON_GROUND,
     )
-
-
-def first_item(telemetry: Telemetry) -> int:
-    """The first item that is flown; ardupilot keeps home as item 0."""
-    return 1 if autopilot_name(telemetry) == "ardupilot" else 0
 
 
 def shown_for(begin: int, items: Sequence[WireItem], telemetry: Telemetry) -> range:

@@ -22,8 +22,7 @@ from gcs.session.work import TellOperator
 from gcs.vehicle.missions.jobs.bring_on_board import BringMission
 from gcs.vehicle.missions.jobs.job import Asked, JobWork, VehicleView
 from gcs.vehicle.missions.jobs.prepared import MOST_FINDINGS
-from gcs.vehicle.missions.jobs.starting import first_item
-from gcs.vehicle.missions.paths import autopilot_name
+from gcs.vehicle.missions.paths import autopilot_name, first_item
 from gcs.vehicle.missions.plans import prepare, prepare_items
 
 SMALL_BYTES = 20_000

@@ -25,8 +25,8 @@ from gcs.vehicle.missions.jobs.job import (
     VehicleView,
 )
 from gcs.vehicle.missions.jobs.prepared import PreparedJob
-from gcs.vehicle.missions.jobs.starting import StartingJob, first_item
-from gcs.vehicle.missions.paths import cleared
+from gcs.vehicle.missions.jobs.starting import StartingJob
+from gcs.vehicle.missions.paths import cleared, first_item
 from gcs.vehicle.missions.plans import on_board, prepare_items
 
 SOURCE = "the mission on board"
