@@ -79,27 +79,26 @@ def _asked(
 def _checked(
     operators: Operators,
     vehicles: Vehicles,
-    bridge: Bridge,
+    bridge: Bridge | None,
     operator: int,
     ask: ipc.Ask,
     now_ns: int,
 ) -> ipc.Checked:
     """The verdict that a request would get now; nothing is opened, recorded or sent for it."""
     owner = vehicles.owner_for(operators.vehicle_of(ask))
-    autopilot, no_vehicle = vehicles.known(owner, now_ns)
-    refusal = operators.refusal(operator, ask) or no_vehicle
-    if refusal is None and owner != STATION:
-        refusal = bridge.armings.why_not(ask, vehicles.of_owner(owner).sysid)
+    vehicle = vehicles.of_owner(owner)
+    refusal = operators.control.refusal(operator, ask) or vehicles.refusal(owner, now_ns)
+    if bridge is not None and refusal is None and owner != STATION:
+        refusal = bridge.armings.why_not(ask, vehicle.sysid)
     if refusal is not None or owner == STATION:
         return announcements.checked(ask, refusal)
     if doer_of(ask.word) is not Doer.GATE:
         return ipc.Checked(ask.id, ask.word, "refused", "BAD_REQUEST", "only requests of the gate")
     try:
-        request = request_of(ask, autopilot or GENERIC)
+        request = request_of(ask, vehicle.telemetry.autopilot if vehicle.telemetry else GENERIC)
     except BadAskError as error:
         return ipc.Checked(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
-    gate = vehicles.of_owner(owner).gate
-    goal = None
+    gate, goal = vehicle.gate, None
     if isinstance(request, GoTo):
         goal = why_not_once_hovering(gate.memory, request.goal_ned, request.yaw_rad)
     return announcements.checked(ask, gate.would(request, source_of(operator), now_ns), goal)

@@ -157,10 +157,6 @@ class Operators:
             case ipc.Join():
                 return [Emit(ipc.Trouble("this connection has joined already"), operator)]
 
-    def refusal(self, operator: int, ask: ipc.Ask) -> Refusal | None:
-        """Why this operator may not ask for that now."""
-        return self._control.refusal(operator, ask)
-
     def _ask(
         self,
         operator: int,
