@@ -2,7 +2,8 @@
 
 A test that flies is flown in one of five of its cases, one if it has fewer: px4 or ardupilot, or
 one of three winds.  Which of them comes first is told by the place of the test in its file, so that
-each autopilot flies half of each file.  What is long in other ways is marked where it stands:
+each autopilot flies half of each file.  Of `tests/loopback` every second test is flown.
+What is long in other ways is marked where it stands:
 `one_in` so many of a list of cases, `seeds`, or `pytest.mark.thorough`.
 """
 
@@ -63,6 +64,9 @@ FLIGHTS = (
     ),
 )
 """Tests that fly a vehicle or start programs in each of their cases."""
+HALVED = "tests/loopback/"
+"""Whole flights of station and vehicle, over half of what `make test` computes: `make test` flies
+every second test of each file there."""
 ONE_OF = 5
 EXAMPLES = 100
 """Of a property that does not say how many, in `make thorough`; `make test` has a quarter."""
@@ -92,13 +96,15 @@ def _case(case: object, *, left: bool) -> ParameterSet:
 
 
 def other_flights(items: Sequence[pytest.Item]) -> Iterator[pytest.Item]:
-    """Of the tests that fly: their other cases, but for what is marked already."""
+    """Of the tests that fly: their other cases, and every second test of `tests/loopback`, but for
+    what is marked already."""
     cases: dict[tuple[str, int], list[pytest.Item]] = defaultdict(list)
     for item in items:
         if item.nodeid.startswith(FLIGHTS) and not item.get_closest_marker("thorough"):
             cases[item.nodeid.partition("[")[0], place_in_file(item)].append(item)
-    for (_, place), flights in cases.items():
-        flown = flights[place % min(ONE_OF, len(flights)) :: ONE_OF]
+    for (name, place), flights in cases.items():
+        turn, left = divmod(place, 2 if name.startswith(HALVED) else 1)
+        flown = [] if left else flights[turn % min(ONE_OF, len(flights)) :: ONE_OF]
         yield from (flight for flight in flights if flight not in flown)
 
 

@@ -11,7 +11,7 @@ import pytest
 from tests.shares import one_in, other_flights
 
 FILE = ModuleType("test_a")
-vars(FILE).update(helper=1, test_first=2, test_second=3)
+vars(FILE).update(helper=1, test_first=2, test_second=3, test_third=4)
 
 
 class Case:
@@ -19,8 +19,10 @@ class Case:
 
     module = FILE
 
-    def __init__(self, test: str, case: str, *, folder: str = "loopback", marked: bool = False):
-        self.nodeid = f"tests/{folder}/test_a.py::{test}[{case}]"
+    def __init__(
+        self, test: str, case: str, *, file: str = "contract/test_a.py", marked: bool = False
+    ) -> None:
+        self.nodeid = f"tests/{file}::{test}[{case}]"
         self.originalname, self.case, self.marked = test, case, marked
 
     def get_closest_marker(self, _name: str) -> bool:
@@ -53,9 +55,16 @@ def test_one_case_in_five_is_flown_and_the_place_of_the_test_tells_which(
     assert flown(*(Case(test, case) for case in cases)) == some
 
 
+@pytest.mark.parametrize(
+    ("test", "some"), [("test_first", "p"), ("test_second", ""), ("test_third", "a")]
+)
+def test_of_whole_flights_every_second_test_is_flown(test: str, some: str) -> None:
+    assert flown(*(Case(test, case, file="loopback/test_a.py") for case in "pa")) == some
+
+
 def test_what_is_left_out_already_is_no_case_and_tables_are_looked_at_as_a_whole() -> None:
     assert flown(Case("test_first", "p", marked=True), Case("test_first", "a")) == "pa"
-    assert flown(*(Case("test_first", case, folder="unit/gate") for case in "pa")) == "pa"
+    assert flown(*(Case("test_first", case, file="unit/gate/test_a.py") for case in "pa")) == "pa"
 
 
 def test_one_in_so_many_cases_is_the_share() -> None:
