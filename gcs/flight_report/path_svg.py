@@ -56,7 +56,7 @@ def _from_above(flight: Flight, vehicle: VehicleFlight, points: list[TrackPoint]
     box = box.at_least(box.height / 1.1, box.width / 2.2)
     view = View(box, WIDTH_PX, WIDTH_PX * box.height / box.width)
     parts = [
-        *_grid(view, "east", "north"),
+        *grid(view, "east", "north"),
         *fence_from_above(flight.fence, view),
         *_drawing(view, plane, vehicle, points),
     ]
@@ -88,7 +88,7 @@ def _from_aside(flight: Flight, vehicle: VehicleFlight, points: list[TrackPoint]
     view = View(box, WIDTH_PX, max(90.0, height_px))
     stretch = view.y_scale / view.x_scale
     parts = [
-        *_grid(view, along, "up"),
+        *grid(view, along, "up"),
         *fence_from_aside(flight.fence, view, axis),
         *_drawing(view, plane, vehicle, points),
     ]
@@ -207,7 +207,8 @@ def _ends(view: View, plane: Plane, points: Sequence[TrackPoint]) -> list[str]:
     return parts
 
 
-def _grid(view: View, x_name: str, y_name: str) -> list[str]:
+def grid(view: View, x_name: str, y_name: str) -> list[str]:
+    """Lines of round metres, and what both axes are."""
     box = view.box
     parts = []
     for x in ticks(box.left, box.right, 7):

@@ -97,6 +97,8 @@ class TimeWalk:
         self._endless: int | None = None
         self._time_s = 0.0
         self.result: FlightTime | None = None
+        self.ends_s: dict[int, float] = {}
+        """When each item is over for the first time, by its place in `Plan.items`."""
 
     def steps(self) -> Iterator[None]:
         """One item a step; after the last one there is a `result`."""
@@ -109,6 +111,7 @@ class TimeWalk:
                 break
             yield
             last, index = index, self._fly(index)
+            self.ends_s.setdefault(last, self._time_s)
             if self._time_s > self._most_s:
                 return self._end(self._time_s, last, whole=False)
         else:

@@ -66,19 +66,38 @@ def check_plan(
         policy, _ = load_policy(policy_name)
     except PolicyFileError as error:
         raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
-    at_home, notes = _choose_home(plan, autopilot, home)
+    at_home, notes = choose_home(plan, autopilot, home)
     findings = (*notes, *lint(plan, autopilot, at_home))
     if at_home is None or not plan.items or worst(list(findings)) is Level.ERROR:
         return Checked(plan, autopilot, policy, at_home, findings, None, None)
-    origin = Origin(at_home.lat_deg, at_home.lon_deg, at_home.alt_amsl_m or 0.0)
-    projection = Projection(origin, autopilot)
-    placed = georeference(plan, projection.lat_lon, home=at_home)
-    home_ned = (0.0, 0.0, 0.0)
+    laid = lay_out(plan, autopilot, at_home)
+    placed, ground = laid.placed, laid.ground
+    origin, home_ned = laid.projection.origin, ground.home_ned
     verifier = verifier_for(policy, autopilot, home_ned, origin, zone_specs(placed.fence))
+    verification = verify(placed, ground, verifier)
+    start = check_start(verifier, home_ned)
+    time = flight_time(placed, ground)
+    return Checked(plan, autopilot, policy, at_home, findings, verification, start, time)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """A plan on Earth, and the ground that it takes off from: home is the local origin."""
+
+    placed: Plan
+    projection: Projection
+    ground: Ground
+
+
+def lay_out(plan: Plan, autopilot: AutopilotName, home: Geodetic) -> Layout:
+    """With a vehicle as it is delivered, on the ground with a full battery."""
+    origin = Origin(home.lat_deg, home.lon_deg, home.alt_amsl_m or 0.0)
+    projection = Projection(origin, autopilot)
+    placed = georeference(plan, projection.lat_lon, home=home)
     ground = Ground(
         autopilot,
-        home_ned=home_ned,
-        start_ned=home_ned,
+        home_ned=(0.0, 0.0, 0.0),
+        start_ned=(0.0, 0.0, 0.0),
         north_east_of=projection.north_east,
         origin_alt_amsl_m=origin.alt_amsl_m,
         return_up_m=RETURN_UP_M[autopilot],
@@ -87,10 +106,7 @@ def check_plan(
         on_ground=True,
         battery_pct=100.0,
     )
-    verification = verify(placed, ground, verifier)
-    start = check_start(verifier, home_ned)
-    time = flight_time(placed, ground)
-    return Checked(plan, autopilot, policy, at_home, findings, verification, start, time)
+    return Layout(placed, projection, ground)
 
 
 def _landings(
@@ -107,7 +123,7 @@ def _landings(
     return tuple(found)
 
 
-def _choose_home(
+def choose_home(
     plan: Plan, autopilot: AutopilotName, given: Geodetic | None
 ) -> tuple[Geodetic | None, tuple[Finding, ...]]:
     """As typed, else the file's, else for a mission the simulated vehicle's, which is told."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import click
 
 from gcs.cli.mission.convert import convert
-from gcs.cli.mission.files import AUTOPILOT, HOME, MISSION_FILE, read_plan
+from gcs.cli.mission.files import AUTOPILOT, FORCE, HOME, MISSION_FILE, read_plan, write_file
 from gcs.cli.options import AS_JSON, POLICY, with_options
 from gcs.exit_codes import ExitCode
 
@@ -48,19 +49,54 @@ def check(
     return result.exit_code
 
 
-@mission.command(epilog="Example: gcs mission show demo")
+@mission.command(epilog="Example: gcs mission show demo --html demo.html")
 @click.argument("file", type=MISSION_FILE)
-@with_options(AUTOPILOT, AS_JSON)
-def show(file: str, autopilot: AutopilotName | None, as_json: bool) -> int:
-    """Print what a mission file holds, item by item."""
+@click.option("--ascii", "ascii_only", is_flag=True, help="Draw without braille dots.")
+@click.option("--svg", metavar="FILE", help="Write the pictures as SVG; - is standard output.")
+@click.option("--html", metavar="FILE", help="Write a page that needs no network.")
+@with_options(AUTOPILOT, POLICY, HOME, FORCE, AS_JSON)
+def show(
+    file: str,
+    ascii_only: bool,
+    svg: str | None,
+    html: str | None,
+    autopilot: AutopilotName | None,
+    policy: str,
+    home: Geodetic | None,
+    force: bool,
+    as_json: bool,
+) -> int:
+    """Show a mission file: its items, its route with lengths, heights and times, its fence.
+
+    Nothing is judged: `gcs mission check` does that. Of the policy only the battery counts here.
+    """
     from gcs.cli.mission.report import plan_json, print_plan
+    from gcs.cli.mission.route import route_of
 
     plan = read_plan(file, autopilot)
-    if as_json:
-        click.echo(plan_json(plan))
+    route = route_of(plan, autopilot, policy, home)
+    if svg is not None or html is not None:
+        from gcs.cli.mission.route_page import page, picture_file
+
+        if svg is not None:
+            write_file(svg, picture_file(plan, route).encode(), force)
+        if html is not None:
+            write_file(html, page(plan, route).encode(), force)
+    elif as_json:
+        click.echo(plan_json(plan, route))
     else:
-        print_plan(plan)
+        encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+        print_plan(plan, route, ascii_only=ascii_only or not has_braille(encoding))
     return ExitCode.DONE
+
+
+def has_braille(encoding: str) -> bool:
+    """Whether text of that encoding can have the dots of the pictures."""
+    try:
+        "\u28ff".encode(encoding)
+    except (UnicodeEncodeError, LookupError):
+        return False
+    return True
 
 
 @mission.command(epilog="Example: gcs mission items")

@@ -12,8 +12,11 @@ from rich.table import Table
 from rich.text import Text
 
 from gcs.cli.mission.check import Checked
+from gcs.cli.mission.route import Route
+from gcs.cli.mission.route_text import route_lines
 from gcs.enu_text import signed_enu
 from gcs.exit_codes import ExitCode
+from gcs.flight_report.number_format import clock
 from gcs.frames import enu_from_ned
 from gcs.plan import commands
 from gcs.plan.errors import Finding, Level
@@ -178,12 +181,12 @@ def _leg_json(verdict: LegVerdict) -> dict[str, object]:
 # ------------------------------------------------------------------------------ show
 
 
-def print_plan(plan: Plan) -> None:
-    """A table of the items, one of the fence, and the reader's notes."""
+def print_plan(plan: Plan, route: Route, *, ascii_only: bool) -> None:
+    """A table of the items, one of the fence, the reader's notes, and the route as a picture."""
     console = Console(highlight=False)
     title = Text(f"{plan.name}  ({plan.source})", "italic")
     if plan.items:
-        console.print(title, _items(plan), sep="\n")
+        console.print(title, _items(plan, route), sep="\n")
     else:
         console.print(title, Text("no items"), sep="\n")
     if plan.fence.zones:
@@ -196,21 +199,37 @@ def print_plan(plan: Plan) -> None:
         console.print(fence)
     for line in _facts(plan):
         console.print(line, markup=False)
+    for drawn in route_lines(route, console.width, ascii_only=ascii_only):
+        console.print(drawn)
 
 
-def _items(plan: Plan) -> Table:
-    """One row an item; `id` only where a jump would not count the rows."""
+def _items(plan: Plan, route: Route) -> Table:
+    """One row an item; `id` only where a jump would not count the rows.
+
+    `way` is the length of its legs, `after` when it is over for the first time.
+    """
     numbered = any(item.do_jump_id != n for n, item in enumerate(plan.items, start=1))
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for heading in ("#", *(["id"] if numbered else []), "item"):
         table.add_column(heading, no_wrap=True)
-    for heading in ("where", "height", "parameters 1-4"):
+    for heading in ("where", "height", "p1-p4"):
         table.add_column(heading)
+    for heading in ("way", "after"):
+        table.add_column(heading, no_wrap=True, justify="right")
     for index, item in enumerate(plan.items, start=1):
         params = " ".join("-" if math.isnan(p) else f"{p:g}" for p in item.params)
         numbers = (str(index), *([str(item.do_jump_id)] if numbered else []))
         name = commands.name(item.command)
-        table.add_row(*numbers, name, _position(item), _height(item), params)
+        way_m, end_s = route.item_length_m(index), route.ends_s.get(index)
+        table.add_row(
+            *numbers,
+            name,
+            _position(item),
+            _height(item),
+            params,
+            f"{way_m:.0f} m" if way_m else "",
+            "" if end_s is None else clock(end_s).partition(".")[0],
+        )
     return table
 
 
@@ -242,9 +261,10 @@ def _position(item: Item) -> str:
 def _height(item: Item) -> str:
     if isinstance(item.place, Geographic):
         alt_m = item.place.alt_m
-        return "not set" if math.isnan(alt_m) else f"{alt_m:g} m {_DATUMS[item.frame]}"
+        datum = _DATUMS[item.frame].removeprefix("above ")
+        return "not set" if math.isnan(alt_m) else f"{alt_m:g} m {datum}"
     if isinstance(item.place, Local):
-        return f"{item.place.up_m:g} m {_DATUMS[item.frame]}"
+        return f"{item.place.up_m:g} m"
     return ""
 
 
@@ -268,8 +288,8 @@ def _heights(zone: Zone) -> str:
     return f"{low} to {high} m"
 
 
-def plan_json(plan: Plan) -> str:
-    """The plan as it was understood; what is not set is null."""
+def plan_json(plan: Plan, route: Route) -> str:
+    """The plan as it was understood, and its route; what is not set is null."""
     items = [
         {
             "number": index,
@@ -295,8 +315,33 @@ def plan_json(plan: Plan) -> str:
         ],
         "rally": [[r.lat_deg, r.lon_deg, r.alt_above_home_m] for r in plan.rally],
         "notes": [finding_json(finding) for finding in plan.notes],
+        "route": _route_json(route),
     }
     return json.dumps(document, indent=2, allow_nan=False)
+
+
+def _route_json(route: Route) -> dict[str, object]:
+    """Metres about home, east, north, up; `ends_s` by the number of the item."""
+    return {
+        "length_m": route.length_m,
+        "climb_m": route.climb_m,
+        "highest_m": route.highest_m,
+        "farthest_m": route.farthest_m,
+        "flight_s": _flight_s(route.flight),
+        "battery": route.battery,
+        "problems": list(route.problems),
+        "ends_s": {str(number): time_s for number, time_s in route.ends_s.items()},
+        "legs": [
+            {
+                "item": leg.item,
+                "kind": leg.kind.value,
+                "from_enu": list(leg.from_enu),
+                "to_enu": list(leg.to_enu),
+                "length_m": leg.length_m,
+            }
+            for leg in route.legs
+        ],
+    }
 
 
 def _number(value: float) -> float | None:
