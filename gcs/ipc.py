@@ -9,8 +9,8 @@ not decode is answered with a `Trouble` event.  What the record keeps too is a s
 `gcs/report.py`, or is made of one.
 
 Answers (`VerdictEvent`, `StreamVerdictEvent`, `OrbitEvent`, `EndingEvent`, `ProgressEvent`,
-`OperationList`, `MessageEvent`, `Topic`, `TopicMessage`) go to the operator who asked; all else
-goes to all.
+`ParametersEvent`, `FileDataEvent`, `FilesEvent`, `OperationList`, `MessageEvent`, `Topic`,
+`TopicMessage`) go to the operator who asked; all else goes to all.
 `docs/json.md` is this module as a page; `SCHEMA` counts up when a field or a meaning that is there
 changes, not when something is added.
 
@@ -55,7 +55,8 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
 
     `word` is one of: control arm disarm takeoff goto orbit land rtl hold abort resume photo mode
     fence mission_start mission_upload mission_download mission_clear mission_set_current
-    mission_check stream_begin stream_end station_take station_release station_end.
+    mission_check param_list param_get param_set file_read file_list stream_begin stream_end
+    station_take station_release station_end.
     Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
     for every one that flies, and the first of them answers.
     """
@@ -68,8 +69,12 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     mode: str = ""  # mode: the autopilot's own name; mission_check: wait until it is shown
     force: bool = False  # disarm
     on: bool = True  # fence
-    path: str = ""  # mission_upload: file to read; mission_download: where to write
+    path: str = ""  # mission_upload: file to read; mission_download: where to write;
+    #   file_read, file_list: on the vehicle
     item: int = 0  # mission_set_current: where the next start begins, as MAVLink counts (seq)
+    name: str = ""  # param_get, param_set: of the parameter
+    value: float | None = None  # param_set
+    offset: int = 0  # file_read: the first byte that is wanted
     operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
     vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
     orbit: Circle | None = None  # orbit
@@ -331,6 +336,45 @@ class TopicMessage(msgspec.Struct, frozen=True, tag="topic_message", tag_field="
     latch: str = ""  # not empty: the last word on this, until another with the same latch comes
 
 
+class Parameter(msgspec.Struct, frozen=True):
+    """A parameter of the vehicle as it holds it."""
+
+    name: str
+    value: int | float | None  # a whole number where its type is; null = not a finite number
+    kind: str  # real32, int32 ...: MAV_PARAM_TYPE
+
+
+class ParametersEvent(msgspec.Struct, frozen=True, tag="parameters", tag_field="type"):
+    """Parameters that were asked for with param_list (at most 50 an event), param_get, param_set:
+    between the verdict and the ending of the request."""
+
+    id: int
+    parameters: list[Parameter]
+
+
+class FileDataEvent(msgspec.Struct, frozen=True, tag="file_data", tag_field="type"):
+    """The next bytes of what file_read reads, in order."""
+
+    id: int
+    offset: int
+    data: bytes  # base64
+    size: int  # of all of it, as the vehicle has told it; ArduPilot's @PARAM says too much
+
+
+class FileInfo(msgspec.Struct, frozen=True):
+    """What a folder on the vehicle holds."""
+
+    name: str
+    size: int | None  # bytes; null = a folder
+
+
+class FilesEvent(msgspec.Struct, frozen=True, tag="files", tag_field="type"):
+    """What file_list has found (at most 50 an event)."""
+
+    id: int
+    files: list[FileInfo]
+
+
 class ProgressEvent(msgspec.Struct, frozen=True, tag="progress", tag_field="type"):
     """A transfer or a climb under way: `done` of `total` in `unit`."""
 
@@ -378,6 +422,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     gps: str = ""  # "3D fix, 10 satellites"
     estimator: str = ""  # "ok", or what is wrong with the vehicle's position
     failsafes: list[str] = []  # its own, one a case: "low battery: land"
+    mends: list[str] = []  # what sets right those that are weak: "gcs param set NAV_DLL_ACT 2"
     battery_pct: float | None = None
     battery_v: float | None = None
     heartbeat_age_s: float | None = None
@@ -493,6 +538,9 @@ Event: TypeAlias = (
     | Operation
     | OperationList
     | ProgressEvent
+    | ParametersEvent
+    | FileDataEvent
+    | FilesEvent
     | MessageEvent
     | Topic
     | TopicMessage

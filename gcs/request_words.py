@@ -58,6 +58,7 @@ class Doer(Enum):
     GATE = "the vehicle's gate"
     JOB = "a job about missions"
     TRANSFER = "a job about missions that moves nothing: an abort of it stops the job alone"
+    READER = "a job about what the vehicle keeps: parameters, files, logs; it moves nothing"
     ORBIT = "the circle that the station flies"
     STATION = "the station, at once"
     CONSOLE = "the operator's program itself"
@@ -313,6 +314,25 @@ TABLE: Final[tuple[Word, ...]] = (
     ),
     Word("mission clear", "remove the mission on board", doer=Doer.TRANSFER),
     Word(
+        "param get",
+        "read a parameter of the vehicle",
+        (Argument("NAME", ArgumentKind.NAME, "name"),),
+        "RTL_RETURN_ALT",
+        doer=Doer.READER,
+        anyone=True,
+    ),
+    Word(
+        "param set",
+        "set a parameter of the vehicle and read it back; what safety stands on only while the "
+        "vehicle is disarmed on the ground",
+        (
+            Argument("NAME", ArgumentKind.NAME, "name"),
+            Argument("VALUE", ArgumentKind.NUMBER, "value"),
+        ),
+        "NAV_DLL_ACT 2",
+        doer=Doer.READER,
+    ),
+    Word(
         "station take",
         "take control over from the operator who has it; it is told",
         doer=Doer.STATION,
@@ -348,6 +368,9 @@ TABLE: Final[tuple[Word, ...]] = (
     ),
     Word("orbit", doer=Doer.ORBIT),
     Word("mission check", doer=Doer.JOB),
+    Word("param list", doer=Doer.READER, anyone=True),
+    Word("file read", doer=Doer.READER, anyone=True),
+    Word("file list", doer=Doer.READER, anyone=True),
     Word("stream begin", gate=gate.BeginStream()),
     Word("stream end", gate=gate.EndStream()),
     Word("station release", doer=Doer.STATION, anyone=True),
@@ -379,7 +402,7 @@ WORD_BY_NAME: dict[str, Word] = {word.name: word for word in WORDS}
 def label(request: Ask) -> str:
     """A request as an operator would type it: the table read backwards."""
     name = request.word
-    for first in ("mission", "station", "stream"):
+    for first in ("mission", "param", "file", "station", "stream"):
         name = name.replace(f"{first}_", f"{first} ")
     parts: list[str] = [name]
     if request.word == "takeoff":
@@ -390,6 +413,9 @@ def label(request: Ask) -> str:
         parts.append(_shown(request.yaw_deg))
     if request.word == "fence":
         parts.append("on" if request.on else "off")
+    parts += [request.name] if request.name else []
+    if request.word == "param_set":
+        parts.append("nan" if request.value is None else f"{request.value:.9g}")
     parts += [
         part for part in (request.mode, request.path, "--force" if request.force else "") if part
     ]

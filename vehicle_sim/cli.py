@@ -34,6 +34,8 @@ APART_M: Final = 5.0
 METRES_PER_DEGREE: Final = 111_319.49
 SYSTEMS_MAX: Final = 250
 """Vehicles that can be told apart on one link; ids above are ground stations'."""
+NAME_MAX: Final = 16
+"""Letters of a parameter's name."""
 STATION: Final = "udpout://127.0.0.1:14550"
 AIRFRAMES: Final = ("s500", "racer250", "sih")
 
@@ -53,6 +55,7 @@ class Options:
     speedup: Fraction
     links: tuple[str, ...]
     params: tuple[tuple[str, float], ...]
+    param_file: str | None
     wind: tuple[float, float, float]
     fault: str | None
     signing_key: str | None
@@ -161,6 +164,12 @@ class _BadFileError(Exception):
     "--param", "params", type=AssignmentType(), multiple=True, help="Sets a parameter at start."
 )
 @click.option(
+    "--param-file",
+    type=click.Path(dir_okay=False),
+    help="Starts with the parameters of this file, a line `NAME value` or `NAME,value` each.  "
+    "Those that it does not have are served as floats, and nothing depends on them.",
+)
+@click.option(
     "--streams",
     type=click.Choice(["full", "real", "position"]),
     default="full",
@@ -212,6 +221,7 @@ def main(
     port: int | None,
     links: tuple[str, ...],
     params: tuple[tuple[str, float], ...],
+    param_file: str | None,
     streams: StreamChoice,
     view: str | None,
     sysid: int,
@@ -249,6 +259,7 @@ def main(
                 speedup=speedup,
                 links=links,
                 params=params,
+                param_file=param_file,
                 wind=wind,
                 fault=fault,
                 signing_key=signing_key,
@@ -338,6 +349,7 @@ def plan_of(options: Options) -> Plan:
         seed=options.seed,
         speedup=options.speedup,
         params=options.params,
+        param_file=() if options.param_file is None else _assignments(options.param_file),
         wind=WindChange((north, east, 0.0), gust),
         faults=faults,
         signing=None if options.signing_key is None else parse_key(_read(options.signing_key)),
@@ -346,6 +358,24 @@ def plan_of(options: Options) -> Plan:
         view=None if options.view is None else parse_view(options.view),
         grade=GRADES[options.sensors],
     )
+
+
+def _assignments(path: str) -> tuple[tuple[str, float], ...]:
+    """The parameters of a file.  Raises _BadFileError."""
+    found: list[tuple[str, float]] = []
+    for number, line in enumerate(_read(path).decode("utf-8", "replace").splitlines(), start=1):
+        parts = line.split("#", 1)[0].replace(",", " ").split()
+        if not parts:
+            continue
+        try:
+            name, value = parts
+            if len(name) > NAME_MAX or not name.isascii():
+                raise ValueError(name)
+            found.append((name, float(value)))
+        except ValueError:
+            wrong = f"{path}:{number}: {line.strip()!r} is not `NAME value`"
+            raise _BadFileError(wrong) from None
+    return tuple(found)
 
 
 def _read(path: str) -> bytes:

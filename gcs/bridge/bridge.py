@@ -44,7 +44,7 @@ from gcs.protocol.enforced_sysid import Hears
 from gcs.protocol.transfer import Timing
 from gcs.wire.frame import Frame
 from gcs.wire.ids import MsgId
-from gcs.wire.messages import ParamValue
+from gcs.wire.messages import ParamSet, ParamValue
 
 FIRST_NUMBER: Final = 1000
 """MAVLink clients have numbers from here up; operators of the local socket have smaller ones."""
@@ -285,6 +285,12 @@ class Bridge:
     ) -> list[BridgeEffect]:
         """PARAM_VALUE of a vehicle's autopilot."""
         return self._judges.of(vehicle).set_up.parameter(message, autopilot, now_ns)
+
+    def written_by_station(
+        self, message: ParamSet, autopilot: str, vehicle: int, now_ns: int
+    ) -> None:
+        """The station sends a PARAM_SET of its own, for an operator."""
+        self._judges.of(vehicle).set_up.written_by_station(message, autopilot, now_ns)
 
     def armed(self, vehicle: Address) -> list[BridgeEffect]:
         """Once a second, of every vehicle that is armed."""

@@ -64,6 +64,10 @@ COMMANDS: dict[str, dict[str, Entry]] = {
             "Mission files: check, show, convert, upload, download, fly, set-current, clear.",
             more="gcs.cli.mission.live:COMMANDS",
         ),
+        "param": Entry(
+            "gcs.cli.param.param:param",
+            "Parameters of the vehicle: list, get, set, show, save, load, diff.",
+        ),
         "key": Entry("gcs.cli.key:key", "Signing keys: new, show, install on a vehicle, remove."),
         "topic": Entry(
             "gcs.cli.topic.topic:topic", "Messages live or recorded: list, echo, hz, plot."

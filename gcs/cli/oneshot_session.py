@@ -58,6 +58,8 @@ class OneShotConfig:
     at_once: bool = False
     placed: bool = True
     wanted: Wanted = ANY_STATION
+    told: bool = True
+    """Verdicts and endings are printed; else the task prints what it has to say of them."""
 
 
 def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
@@ -102,7 +104,8 @@ def run_over(
             display.update(event, connection.now_s())
             if warnings.hides(event, request):
                 return
-            for line, err in _lines(event, request, as_json=how.as_json):
+            shown = request if how.told else None
+            for line, err in _lines(event, shown, as_json=how.as_json):
                 display.clear()
                 click.echo(line, err=err)
 

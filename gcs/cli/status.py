@@ -88,6 +88,7 @@ def rows(
         ("gps", f"{seen.gps or '-'}, estimator {seen.estimator or '-'}"),
         ("battery", f"{_fixed(seen.battery_pct, '%', 0)}, {_fixed(seen.battery_v, 'V', 1)}"),
         ("failsafes", "\n".join(seen.failsafes) or "-"),
+        *([("what mends them", "\n".join(seen.mends))] if seen.mends else []),
         ("link", _link(seen)),
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),
         ("log", seen.log_path or "not recorded"),

@@ -6,7 +6,7 @@ Whoever talks with a station keeps one of these: typed lines, one-shot commands 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import msgspec
 
@@ -23,6 +23,7 @@ _EXIT_CODE_OF_REFUSAL: dict[str, ExitCode] = {
     Code.VEHICLE_REFUSED: ExitCode.REFUSED_BY_VEHICLE,
     Code.NO_ANSWER: ExitCode.NOT_COMPLETED,
     Code.BAD_MISSION: ExitCode.BAD_FILE,
+    Code.BAD_PARAMETER: ExitCode.USAGE,
     Code.RECORDER_DOWN: ExitCode.RECORDER,
     Code.SEVERAL_VEHICLES: ExitCode.USAGE,
     "BAD_REQUEST": ExitCode.USAGE,  # the session's code for what is no request at all
@@ -37,6 +38,10 @@ class TrackedRequest:
     label: str
     verdict: ipc.VerdictEvent | None = None
     outcome: ipc.EndingEvent | None = None
+    found: list[ipc.ParametersEvent | ipc.FileDataEvent | ipc.FilesEvent] = field(
+        default_factory=list
+    )
+    """What was read for it; whoever works on it as it comes may empty the list."""
 
     @property
     def settled(self) -> bool:
@@ -116,6 +121,11 @@ class Conversation:
         match event:
             case ipc.VerdictEvent() | ipc.EndingEvent() | ipc.ProgressEvent():
                 return self._answered(event)
+            case ipc.ParametersEvent() | ipc.FileDataEvent() | ipc.FilesEvent():
+                tracked = self._open.get(event.id)
+                if tracked is not None:
+                    tracked.found.append(event)
+                return tracked
             case ipc.Hello():
                 self.hello = event
             case ipc.Snapshot():

@@ -52,6 +52,11 @@ class Operation:
         """running, complete, aborted, superseded, timed out or taken over."""
         return "running" if self._tracked.outcome is None else self._tracked.outcome.ended
 
+    @property
+    def found(self) -> list[ipc.ParametersEvent | ipc.FileDataEvent | ipc.FilesEvent]:
+        """What was read for it."""
+        return self._tracked.found
+
     def wait(self, timeout_s: float | None = None) -> Operation:
         """Until it is complete.  Raises NotCompleted, Disconnected."""
         self._station.wait_until(lambda: self._tracked.settled, timeout_s)
@@ -250,6 +255,39 @@ class Station:
     def take_control(self) -> None:
         """Be the operator in control of this station, in place of whoever is; all are told."""
         self.request(ipc.Ask(0, "station_take"))
+
+    # ------------------------------------------------------------------------ parameters
+
+    def parameters(self, timeout_s: float | None = None) -> dict[str, int | float]:
+        """All parameters of the vehicle, by name; whole numbers where their type is.
+
+        Raises Refused, NotCompleted, Disconnected.
+        """
+        return self._parameters(ipc.Ask(0, "param_list"), timeout_s)
+
+    def parameter(self, name: str, timeout_s: float | None = None) -> int | float:
+        """One parameter.  Raises Refused with BAD_PARAMETER where the vehicle has none of that
+        name, and says which are near."""
+        return self._parameters(ipc.Ask(0, "param_get", name=name), timeout_s)[name]
+
+    def set_parameter(
+        self, name: str, value: float, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Set a parameter; complete once it is read back as asked.
+
+        What safety stands on is set while the vehicle is disarmed on the ground only.
+        """
+        ask = ipc.Ask(0, "param_set", name=name, value=number(value))
+        return self.request(ask, wait, timeout_s)
+
+    def _parameters(self, ask: ipc.Ask, timeout_s: float | None) -> dict[str, int | float]:
+        found = self.request(ask, True, timeout_s).found
+        told = [each for each in found if isinstance(each, ipc.ParametersEvent)]
+        return {
+            each.name: math.nan if each.value is None else each.value
+            for event in told
+            for each in event.parameters
+        }
 
     # --------------------------------------------------------------------------- reports
 

@@ -7,7 +7,10 @@ from __future__ import annotations
 
 import math
 import struct
+from dataclasses import dataclass
+from typing import Final
 
+from gcs.float32 import float32, value_text
 from gcs.protocol.autopilot import ParamEncoding
 from gcs.wire.ids import ParamType
 
@@ -22,6 +25,48 @@ _INTEGER = {
     ParamType.UINT32: "I",
     ParamType.INT32: "i",
 }
+
+_RANGES: Final = {
+    ParamType.UINT8: (0, 0xFF),
+    ParamType.INT8: (-0x80, 0x7F),
+    ParamType.UINT16: (0, 0xFFFF),
+    ParamType.INT16: (-0x8000, 0x7FFF),
+    ParamType.UINT32: (0, 0xFFFFFFFF),
+    ParamType.INT32: (-0x80000000, 0x7FFFFFFF),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One of a vehicle's; an integer type has a whole number."""
+
+    name: str
+    value: int | float
+    type: ParamType
+
+    @property
+    def text(self) -> str:
+        """The value in the fewest digits that mean it."""
+        return value_text(self.value)
+
+
+def why_not(name: str, value: float, type_: ParamType, encoding: ParamEncoding) -> str:
+    """Why a parameter of that type cannot be set to the value; empty where it can."""
+    if not math.isfinite(value):
+        return f"{name}: the value is not a finite number"
+    limits = _RANGES.get(type_)
+    if limits is None:
+        if type_ is not ParamType.REAL32:
+            return f"{name} is of a type that the parameter protocol does not carry"
+        return "" if math.isfinite(float32(value)) else f"{name}: {value:g} is no 32-bit float"
+    kind = type_.name.lower()
+    if value != int(value):
+        return f"{name} is a whole number ({kind}), not {value:g}"
+    if not limits[0] <= value <= limits[1]:
+        return f"{name} is {kind}, {limits[0]} to {limits[1]}, not {int(value)}"
+    if decode_value(float32(encode_value(value, type_, encoding)), type_, encoding) != value:
+        return f"{name}: {int(value)} cannot travel in the float of a PARAM_SET"
+    return ""
 
 
 def decode_value(wire: float, type_: ParamType, encoding: ParamEncoding) -> int | float:

@@ -40,7 +40,7 @@ NODE = "state_and_safety"
 def log(line: Log, now_ns: int, prefix: str = "") -> list[Effect]:
     """One line, to the screen and to the record; `prefix` names the vehicle that it is of."""
     event = LogEvent(now_ns, int(line.level), line.node, prefix + line.text)
-    return [Emit(event), Record(event)]
+    return [Emit(event), Record(event)] if line.recorded else [Emit(event)]
 
 
 def requested(asked: Asked, request: Request) -> Log:

@@ -71,11 +71,13 @@ class GiveVerdict(msgspec.Struct, frozen=True, gc=False):
 
 
 class Log(msgspec.Struct, frozen=True, gc=False):
-    """A line of the node `node`, for the screen and the record."""
+    """A line of the node `node`, for the screen and the record; one that is not `recorded` says
+    what can be done, not what was."""
 
     level: Level
     node: str
     text: str
+    recorded: bool = True
 
 
 class TellOperator(msgspec.Struct, frozen=True, gc=False):
@@ -95,6 +97,14 @@ class AskMission(msgspec.Struct, frozen=True, gc=False):
     ask: ipc.Ask
     plan: ClientPlan | None = None
     kind: MissionType = MissionType.MISSION
+
+
+class AskReader(msgspec.Struct, frozen=True, gc=False):
+    """The request that was opened as `request_id`, about parameters, files or logs of the vehicle:
+    for its jobs."""
+
+    request_id: int
+    ask: ipc.Ask
 
 
 class AskOrbit(msgspec.Struct, frozen=True, gc=False):
@@ -161,6 +171,7 @@ Work: TypeAlias = (
     | Log
     | TellOperator
     | AskMission
+    | AskReader
     | AskOrbit
     | OrbitSample
     | StopTransfer

@@ -60,7 +60,7 @@ from gcs.vehicle.vehicle import Vehicle
 from gcs.wire.codec import decode
 from gcs.wire.frame import Frame
 from gcs.wire.ids import Result
-from gcs.wire.messages import ParamValue
+from gcs.wire.messages import ParamSet, ParamValue
 
 NODE = "link"
 UNASKED = "it was disarmed and is armed now, and no client of this bridge asked for it"
@@ -176,6 +176,11 @@ class BridgePort:
             return []
         autopilot = telemetry.autopilot.name
         return self.bridge.parameter(message, autopilot, telemetry.sysid, now_ns)
+
+    def station_writes(self, message: ParamSet, telemetry: Telemetry, now_ns: int) -> None:
+        """The station sends a PARAM_SET of its own: its change is nobody else's."""
+        autopilot = telemetry.autopilot.name
+        self.bridge.written_by_station(message, autopilot, telemetry.sysid, now_ns)
 
     def before_gate(self, given: Input, sysid: int, now_ns: int) -> list[BridgeEffect]:
         """The vehicle's own answer to a command is what the client is answered, too, or the mode

@@ -25,6 +25,7 @@ from gcs.session.speedup_waits import Times
 from gcs.session.work import (
     AskMission,
     AskOrbit,
+    AskReader,
     EndSession,
     GateInput,
     GiveVerdict,
@@ -179,6 +180,9 @@ class Operators:
         if doer in (Doer.JOB, Doer.TRANSFER):
             given = self._give_where_free(operator, ask, now_ns)
             return [*given, AskMission(self._requests.open(ask, operator), ask)]
+        if doer is Doer.READER:
+            given = self._give_where_free(operator, ask, now_ns)
+            return [*given, AskReader(self._requests.open(ask, operator), ask)]
         if doer is Doer.ORBIT:
             given = self._give_where_free(operator, ask, now_ns)
             return [*given, AskOrbit(self._requests.open(ask, operator), ask, operator)]
@@ -256,7 +260,7 @@ class Operators:
             ended = "is not known" if operation is None else f"has ended: {operation.state}"
             refusal = Refusal(Code.NOT_RUNNING, f"operation {ask.operation} {ended}")
             return self._refuse(request_id, ask, refusal)
-        if doer_of(operation.asked.word) is Doer.TRANSFER:
+        if doer_of(operation.asked.word) in (Doer.TRANSFER, Doer.READER):
             return [StopTransfer(ask.operation), *_done(request_id, "the transfer is stopped")]
         return self.ask_gate(request_id, Abort())
 

@@ -66,6 +66,7 @@ from gcs.session.work import (
     AskGate,
     AskMission,
     AskOrbit,
+    AskReader,
     CheckStart,
     EndSession,
     ForOwner,
@@ -98,6 +99,7 @@ from gcs.station.waiting_for_vehicle import WaitingForVehicle
 from gcs.vehicle.record_items import fault, hello, introduction, recorded, sim_line
 from gcs.vehicle.snapshot import snapshot
 from gcs.vehicle.talk.telemetry import Telemetry
+from gcs.wire.messages import ParamSet
 
 OTHER_STATION_NS = 5_000_000_000
 """How long after its last frame a station with our id still counts as there."""
@@ -341,6 +343,8 @@ class Session:
                 telemetry = vehicle.telemetry
                 if telemetry is None:
                     return []
+                if isinstance(message, ParamSet) and self._bridge.open:
+                    self._bridge.station_writes(message, telemetry, now_ns)
                 return [*self._links.send(telemetry.link, message, now_ns)]
             case gate_effects.Outcome():
                 # Whoever waits for an end looks at the vehicle next: not at how it was before.
@@ -373,6 +377,8 @@ class Session:
                 return self._operators.ask_gate(request_id, request)
             case AskMission():
                 return vehicle.ask_mission(item, now_ns)
+            case AskReader():
+                return vehicle.readers.ask(item, vehicle.telemetry, vehicle.port.policy, now_ns)
             case AskOrbit():
                 return vehicle.ask_orbit(item, now_ns)
             case OrbitSample(operator, sample):
@@ -382,7 +388,9 @@ class Session:
                 refusal = vehicle.refusal(now_ns)
                 return self._operators.line(operator, sample, None, refusal, now_ns)
             case StopTransfer(request_id):
-                return self._vehicles.each(lambda each: each.missions.stop(request_id))
+                return self._vehicles.each(
+                    lambda each: [*each.missions.stop(request_id), *each.readers.stop(request_id)]
+                )
             case StreamOver(sysid, request_id):
                 slot = self._vehicles.slot_of(sysid)
                 end = AskGate(request_id, EndStream())

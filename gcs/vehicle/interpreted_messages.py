@@ -16,6 +16,7 @@ from gcs.wire.ids import Component, MavAutopilot, MavType
 
 CAMERA_MESSAGES: Final = frozenset({m.CameraImageCaptured, m.CameraFeedback})
 PARAMETER_MESSAGES: Final = frozenset({m.ParamValue, m.ParamError})
+FILE_MESSAGES: Final = frozenset({m.FileTransferProtocol})
 MISSION_MESSAGES: Final = frozenset(
     {m.MissionCurrent, m.MissionItemReached, *get_args(PlanMessage)}
 )
@@ -25,6 +26,7 @@ INTERPRETED: Final = frozenset(
     for kind in (
         *UPDATE_MESSAGES,
         *PARAMETER_MESSAGES,
+        *FILE_MESSAGES,
         *MISSION_MESSAGES,
         *EVENT_MESSAGES,
         *STATE_MESSAGES,

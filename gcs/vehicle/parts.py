@@ -29,6 +29,7 @@ from gcs.vehicle.parameters import settings
 from gcs.vehicle.parameters.failsafes import limits_of
 from gcs.vehicle.parameters.settings import Settings
 from gcs.vehicle.parameters.stop_parameters import StopParameters
+from gcs.vehicle.readers.readers import Readers
 from gcs.vehicle.talk.commands import Commands
 from gcs.vehicle.talk.discovery import Discovery
 from gcs.vehicle.talk.liveness import Presence, Roster
@@ -72,6 +73,7 @@ class VehicleParts:
         )
         self.stop_parameters = StopParameters()
         self.missions = Missions(own, times)
+        self.readers = Readers(own, times)
         self.orbits = Orbits(times)
         self.returns = ReturnPlaces(own, times, policy)
         self.fence = FenceOnBoard(own, times)
@@ -128,12 +130,15 @@ class VehicleParts:
                     work += accuracy(telemetry)
                 case settings.ClimbEndKnown(within_m):
                     work.append(GateInput(inputs.ClimbEndSeen(within_m)))
-                case settings.FailsafesKnown(weak, every):
-                    telemetry.failsafes = every
+                case settings.FailsafesKnown(weak, every, mends):
+                    telemetry.failsafes, telemetry.mends = every, mends
                     head = "the vehicle's own failsafes: "
                     text = head + ("; ".join(weak) or "all on")
                     work.append(condition(Condition.VEHICLE_FAILSAFE_WEAK, bool(weak), text))
                     work.append(Log(Level.INFO, NODE, head + "; ".join(every or weak)))
+                    if mends:
+                        hint = f"what mends its failsafes: {'; '.join(mends)}"
+                        work.append(Log(Level.INFO, NODE, hint, recorded=False))
         return work
 
     def ask_for_missing(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
@@ -154,6 +159,7 @@ class VehicleParts:
         ends_m = telemetry.autopilot.climb_ends_within_m
         return [
             *self.missions.forget(),
+            *self.readers.forget(),
             GateInput(inputs.ClimbEndSeen(ends_m)),
             *accuracy(telemetry),
         ]

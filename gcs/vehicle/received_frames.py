@@ -23,6 +23,7 @@ from gcs.vehicle.health.limit_monitors import WATCH_MESSAGES
 from gcs.vehicle.health.position_latency import Delay
 from gcs.vehicle.interpreted_messages import (
     CAMERA_MESSAGES,
+    FILE_MESSAGES,
     INTERPRETED,
     MISSION_MESSAGES,
     PARAMETER_MESSAGES,
@@ -171,7 +172,10 @@ class VehicleFrames:
             work += parts.learn(parts.settings.heard(heard, telemetry, now_ns), telemetry)
             if isinstance(message, m.ParamValue) and heard.compid == telemetry.compid:
                 work += parts.stop_parameters.heard(message, telemetry.autopilot)
+            work += parts.readers.heard(heard, telemetry, now_ns)
             work += self._of_plans(telemetry, heard, now_ns)
+        elif type(message) in FILE_MESSAGES:
+            return parts.readers.heard(heard, telemetry, now_ns)
         elif type(message) in MISSION_MESSAGES:
             work += self._of_plans(telemetry, heard, now_ns)
         elif isinstance(message, m.CommandLong):

@@ -62,6 +62,7 @@ def snapshot(
         gps=telemetry.health.gps.words,
         estimator=telemetry.health.estimator.words,
         failsafes=list(telemetry.failsafes),
+        mends=list(telemetry.mends),
         battery_pct=telemetry.battery_pct,
         battery_v=telemetry.battery_v,
         heartbeat_age_s=(now_ns - telemetry.heartbeat_ns) / 1e9,

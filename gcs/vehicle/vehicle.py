@@ -69,7 +69,7 @@ class Vehicle(VehicleParts):
     def deadline_ns(self) -> int | None:
         """When some part's wait is over; the gate itself lives on ticks."""
         talking = (self.commands, self.settings, self.missions, self.returns.rally, self.fence)
-        waiting = (*talking, self.words, self.events, self.reasons)
+        waiting = (*talking, self.readers, self.words, self.events, self.reasons)
         times = [time for part in waiting if (time := part.deadline_ns) is not None]
         return min(times, default=None)
 
@@ -125,6 +125,7 @@ class Vehicle(VehicleParts):
         if self.telemetry is not None:
             work += self.reasons.wake(self.telemetry.custom_mode, now_ns)
             work += self.learn(self.settings.wake(self.telemetry, now_ns), self.telemetry)
+            work += self.readers.wake(self.telemetry, now_ns)
             missions = self.missions.wake(self.view(self.telemetry), now_ns)
             work += self.with_plans_on_board(missions, now_ns)
             work += self.wake_plans_on_board(self.telemetry, now_ns)
@@ -244,6 +245,7 @@ class Vehicle(VehicleParts):
             released = [] if command is None else [Send(command)]
         return [
             *self.missions.leave(),
+            *self.readers.leave(),
             *released,
             *record_items.stood_on(self.parameters, self.port.fence_shapes, self.of),
         ]

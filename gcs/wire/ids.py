@@ -20,6 +20,7 @@ class MsgId(IntEnum):
     LINK_NODE_STATUS = 8
     SET_MODE = 11
     PARAM_REQUEST_READ = 20
+    PARAM_REQUEST_LIST = 21
     PARAM_VALUE = 22
     PARAM_SET = 23
     GPS_RAW_INT = 24

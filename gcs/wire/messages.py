@@ -113,6 +113,14 @@ class ParamRequestRead(Message, frozen=True, gc=False):
     param_id: str  # at most 16 bytes
 
 
+class ParamRequestList(Message, frozen=True, gc=False):
+    """PARAM_REQUEST_LIST (21): 2 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.PARAM_REQUEST_LIST
+    target_system: int
+    target_component: int
+
+
 class ParamValue(Message, frozen=True, gc=False):
     """PARAM_VALUE (22): 25 bytes."""
 

@@ -80,6 +80,7 @@ class Flight(Looks):
         up: Weather = CLEAR,
         down: Weather = CLEAR,
         params: dict[str, float] | None = None,
+        param_file: dict[str, float] | None = None,
         firmware: Firmware | None = None,
         boot: Boot = "quick",
         config: StationConfig = CONFIG,
@@ -93,8 +94,9 @@ class Flight(Looks):
         super().__init__()
         self.personality = personality
         self.policy = policy
-        parameters = Parameters(personality, firmware)
-        for name, value in (params or {}).items():
+        kept = param_file or {}
+        parameters = self.parameters = Parameters(personality, firmware, kept)
+        for name, value in {**kept, **(params or {})}.items():
             parameters.set(name, value)
         self.vehicle = Autopilot(
             personality, HOMES[personality], seed, params=parameters, boot=boot
@@ -276,6 +278,9 @@ class Flight(Looks):
         force: bool = False,
         mode: str = "",
         path: str = "",
+        name: str = "",
+        value: float | None = None,
+        offset: int = 0,
     ) -> int:
         """One request; its number."""
         self.last_id = ask_id = self.last_id + 1
@@ -292,6 +297,9 @@ class Flight(Looks):
             force=force,
             mode=mode,
             path=path,
+            name=name,
+            value=value,
+            offset=offset,
         )
         self.feed(inputs.OperatorLine(1, ask))
         return ask_id

@@ -37,6 +37,7 @@ def options(count: int, links: tuple[str, ...] = ()) -> Options:
         speedup=SpeedType().convert("1", None, None),
         links=links,
         params=(),
+        param_file=None,
         wind=(0.0, 0.0, 0.0),
         fault=None,
         signing_key=None,

@@ -83,6 +83,7 @@ class Plan:
     camera: bool = True
     operator_control: bool = False  # one station at a time commands
     grade: SensorGrade = MEMS
+    param_file: tuple[tuple[str, float], ...] = ()  # names that are in no table are kept, too
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +167,10 @@ def _stream_sets(plan: Plan, profile: Profile) -> StreamSets:
 
 def parameters_of(plan: Plan, setup: VehicleSetup) -> Parameters:
     """A reset keeps the system id and what was set at the start.  Raises ParameterError."""
-    parameters = Parameters(plan.personality, plan.firmware)
+    others = [name for name, _ in plan.param_file]
+    parameters = Parameters(plan.personality, plan.firmware, others)
+    for name, value in plan.param_file:
+        parameters.start_with(name, value)
     parameters.start_as(setup.system)
     for name, value in plan.params:
         parameters.start_with(name, value)

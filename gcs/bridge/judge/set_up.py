@@ -28,6 +28,7 @@ from gcs.wire.messages import (
     LogRequestData,
     LogRequestEnd,
     Message,
+    ParamSet,
     ParamValue,
     RallyPoint,
 )
@@ -73,6 +74,10 @@ class SetUpJudge:
     def height_awaited(self) -> bool:
         """The least height of a climb was written just now: nobody's climb can be judged."""
         return self._guard is not None and self._guard.awaits(TAKEOFF_HEIGHT)
+
+    def written_by_station(self, message: ParamSet, autopilot: str, now_ns: int) -> None:
+        """The station sends a PARAM_SET of its own."""
+        self._guard_of(autopilot).written_by_station(message, now_ns)
 
     def parameter(self, message: ParamValue, autopilot: str, now_ns: int) -> list[BridgeEffect]:
         """PARAM_VALUE of the vehicle's autopilot: what has changed, for the log."""

@@ -117,6 +117,10 @@ class Guard:
         """A client has written the parameter, and the vehicle has not told its value since."""
         return self._parameters.awaits(name)
 
+    def written_by_station(self, message: ParamSet, now_ns: int) -> None:
+        """The station sends a PARAM_SET of its own."""
+        self._parameters.written_by_station(message, now_ns)
+
     def heard(self, message: ParamValue, now_ns: int) -> Changed | None:
         """PARAM_VALUE of the vehicle's autopilot: the news in it, for the log."""
         return self._parameters.heard(message, now_ns)

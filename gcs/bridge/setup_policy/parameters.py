@@ -169,6 +169,12 @@ class ParameterGuard:
         """It was let through, and the vehicle has not told yet what it is now."""
         return name in self._writes
 
+    def written_by_station(self, message: ParamSet, now_ns: int) -> None:
+        """The station sends one itself, for an operator."""
+        value = self._decoded(message.param_value, message.param_type)
+        write = _Write("the station", value, now_ns + OVERTAKEN_NS)
+        self._writes[message.param_id.upper()] = write
+
     def heard(self, message: ParamValue, now_ns: int) -> Changed | None:
         """PARAM_VALUE of the vehicle: what is to be told of it."""
         name = message.param_id

@@ -13,6 +13,7 @@ is written nowhere.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias
@@ -59,6 +60,8 @@ class Finding:
     about: str
     says: str
     weak: bool
+    mends: tuple[tuple[str, float], ...] = ()
+    """Parameters and values with which it would not be weak; empty where none is known here."""
 
     @property
     def words(self) -> str:
@@ -74,12 +77,23 @@ class Case:
     needs: tuple[str, ...]
     judge: Callable[[Values, Limits], tuple[str, bool]]
     may_need: tuple[str, ...] = ()
+    mends: Callable[[Limits], Mapping[str, float]] = lambda _: {}
+    """What each of them may be set to where it is weak."""
 
     def finding(self, values: Values, limits: Limits) -> Finding:
         unknown = [name for name in self.needs if name not in values]
         if unknown:
             return Finding(self.about, f"{' and '.join(unknown)} could not be read", True)
-        return Finding(self.about, *self.judge(values, limits))
+        says, weak = self.judge(values, limits)
+        return Finding(self.about, says, weak, self._mends(values, limits) if weak else ())
+
+    def _mends(self, values: Values, limits: Limits) -> tuple[tuple[str, float], ...]:
+        """The first setting that is enough by itself, else all of them if these are."""
+        known = [one for one in self.mends(limits).items() if math.isfinite(one[1])]
+        for some in (*((one,) for one in known), tuple(known)):
+            if not self.judge({**values, **dict(some)}, limits)[1]:
+                return some
+        return ()
 
 
 def limits_of(policy: Policy, own_sysid: int) -> Limits:
@@ -344,13 +358,43 @@ def _copter_fence(values: Values, limits: Limits) -> tuple[str, bool]:
 
 CASES: Final[Mapping[str, tuple[Case, ...]]] = {
     "px4": (
-        Case("ground-station loss", ("NAV_DLL_ACT",), _px4_station, ("COM_DL_LOSS_T",)),
-        Case("stick loss", ("NAV_RCL_ACT",), _px4_sticks),
-        Case("offboard loss", ("COM_OBL_RC_ACT",), _px4_offboard, ("COM_OF_LOSS_T",)),
-        Case("low battery", ("COM_LOW_BAT_ACT",), _px4_battery),
-        Case(FENCE_ACTION, ("GF_ACTION",), _px4_breach),
-        Case(FENCE, ("GF_MAX_HOR_DIST", "GF_MAX_VER_DIST"), _px4_fence),
-        Case("return", ("RTL_RETURN_ALT",), lambda v, at: _ceiling(v, at, "RTL_RETURN_ALT")),
+        Case(
+            "ground-station loss",
+            ("NAV_DLL_ACT",),
+            _px4_station,
+            ("COM_DL_LOSS_T",),
+            lambda _: {"NAV_DLL_ACT": 2, "COM_DL_LOSS_T": 10},
+        ),
+        Case("stick loss", ("NAV_RCL_ACT",), _px4_sticks, (), lambda _: {"NAV_RCL_ACT": 2}),
+        Case(
+            "offboard loss",
+            ("COM_OBL_RC_ACT",),
+            _px4_offboard,
+            ("COM_OF_LOSS_T",),
+            lambda _: {"COM_OBL_RC_ACT": 5, "COM_OF_LOSS_T": 1},
+        ),
+        Case(
+            "low battery",
+            ("COM_LOW_BAT_ACT",),
+            _px4_battery,
+            (),
+            lambda _: {"COM_LOW_BAT_ACT": 3},
+        ),
+        Case(FENCE_ACTION, ("GF_ACTION",), _px4_breach, (), lambda _: {"GF_ACTION": 2}),
+        Case(
+            FENCE,
+            ("GF_MAX_HOR_DIST", "GF_MAX_VER_DIST"),
+            _px4_fence,
+            (),
+            lambda at: {"GF_MAX_HOR_DIST": at.reach_m, "GF_MAX_VER_DIST": at.ceiling_up_m},
+        ),
+        Case(
+            "return",
+            ("RTL_RETURN_ALT",),
+            lambda v, at: _ceiling(v, at, "RTL_RETURN_ALT"),
+            (),
+            lambda at: {"RTL_RETURN_ALT": at.ceiling_up_m},
+        ),
     ),
     "ardupilot": (
         Case(
@@ -358,19 +402,51 @@ CASES: Final[Mapping[str, tuple[Case, ...]]] = {
             ("FS_GCS_ENABLE",),
             _copter_station,
             ("FS_GCS_TIMEOUT", "MAV_GCS_SYSID", "MAV_GCS_SYSID_HI"),
+            lambda at: {"FS_GCS_ENABLE": 1, "FS_GCS_TIMEOUT": 5, "MAV_GCS_SYSID": at.own_sysid},
         ),
-        Case("stick loss", ("FS_THR_ENABLE",), _copter_sticks),
-        Case("offboard loss", (), _copter_offboard, ("GUID_TIMEOUT",)),
+        Case("stick loss", ("FS_THR_ENABLE",), _copter_sticks, (), lambda _: {"FS_THR_ENABLE": 1}),
+        Case(
+            "offboard loss", (), _copter_offboard, ("GUID_TIMEOUT",), lambda _: {"GUID_TIMEOUT": 3}
+        ),
         Case(
             "low battery",
             ("BATT_FS_LOW_ACT",),
             _copter_battery,
             ("BATT_LOW_VOLT", "BATT_LOW_MAH"),
+            lambda _: {"BATT_FS_LOW_ACT": 2},
         ),
-        Case("position lost", ("FS_EKF_ACTION",), _copter_estimate),
-        Case(FENCE_ACTION, ("FENCE_ENABLE",), _copter_breach, ("FENCE_ACTION",)),
-        Case(FENCE, ("FENCE_TYPE", "FENCE_RADIUS", "FENCE_ALT_MAX"), _copter_fence),
-        Case("return", ("RTL_ALT_M",), lambda v, at: _ceiling(v, at, "RTL_ALT_M")),
+        Case(
+            "position lost",
+            ("FS_EKF_ACTION",),
+            _copter_estimate,
+            (),
+            lambda _: {"FS_EKF_ACTION": 1},
+        ),
+        Case(
+            FENCE_ACTION,
+            ("FENCE_ENABLE",),
+            _copter_breach,
+            ("FENCE_ACTION",),
+            lambda _: {"FENCE_ENABLE": 1, "FENCE_ACTION": 4},
+        ),
+        Case(
+            FENCE,
+            ("FENCE_TYPE", "FENCE_RADIUS", "FENCE_ALT_MAX"),
+            _copter_fence,
+            (),
+            lambda at: {
+                "FENCE_TYPE": 7,
+                "FENCE_RADIUS": at.reach_m,
+                "FENCE_ALT_MAX": at.ceiling_up_m,
+            },
+        ),
+        Case(
+            "return",
+            ("RTL_ALT_M",),
+            lambda v, at: _ceiling(v, at, "RTL_ALT_M"),
+            (),
+            lambda at: {"RTL_ALT_M": at.ceiling_up_m},
+        ),
     ),
 }
 """What is looked at, by autopilot, in the order in which it is told."""

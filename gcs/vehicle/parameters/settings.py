@@ -103,6 +103,8 @@ class FailsafesKnown:
 
     weak: tuple[str, ...]
     all: tuple[str, ...] = ()
+    mends: tuple[str, ...] = ()
+    """The commands with which what is weak would not be."""
 
 
 Found: TypeAlias = (
@@ -139,6 +141,8 @@ class Settings:
         self._scales: dict[str, tuple[str, float]] = {}
         """By every name that is asked for: the newest name, and what makes its unit."""
         self._values: dict[str, float] = {}
+        self._names: dict[str, str] = {}
+        """By the newest name of what was read: the one that this vehicle has it under."""
         self._silent: list[str] = []
         self._told: FailsafesKnown | None = None
         self._read_again_ns: int | None = None
@@ -230,6 +234,7 @@ class Settings:
     def _known(self, name: str, read: float, who: str) -> list[Found]:
         newest, scale = self._scales[name]
         value = self._values[newest] = read * scale
+        self._names[newest] = name
         if newest in self._silent:
             self._silent.remove(newest)
         found: list[Found] = [ParameterKnown(name, read)]
@@ -269,7 +274,14 @@ class Settings:
             return FailsafesKnown(("not known: which parameters they have is not known here",))
         found = findings(who, self._values, self._limits)
         weak = tuple(each.words for each in found if each.weak)
-        return FailsafesKnown(weak, tuple(each.words for each in found))
+        mends = tuple(self._command(*each) for one in found for each in one.mends)
+        return FailsafesKnown(weak, tuple(each.words for each in found), mends)
+
+    def _command(self, newest: str, value: float) -> str:
+        """That sets it, under this vehicle's own name and in its unit."""
+        name = self._names.get(newest, newest)
+        _, scale = self._scales.get(name, (name, 1.0))
+        return f"gcs param set {name} {value / scale:g}"
 
 
 def _whose(telemetry: Telemetry) -> str:

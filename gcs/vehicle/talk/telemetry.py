@@ -80,6 +80,8 @@ class Telemetry:
     return_void: bool = False  # it was known, and may be another one since a restart
     failsafes: tuple[str, ...] = ()
     """What it does by itself in each case, in words, once its settings were read."""
+    mends: tuple[str, ...] = ()
+    """The commands that set right which of these are off or weak."""
     accuracy_told: AccuracySeen | None = None
     acceptance_m: float | None = None  # how near a waypoint it takes it as reached itself
 

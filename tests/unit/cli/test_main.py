@@ -106,7 +106,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     ("args", "told"),
     [
         (["got"], "no command 'got'; `gcs --help` lists them"),
-        (["param"], "no command 'param'; `gcs --help` lists them"),
+        (["tune"], "no command 'tune'; `gcs --help` lists them"),
         (["stauts"], "no command 'stauts'; did you mean 'status'?"),
         (["aborrt"], "no command 'aborrt'; did you mean 'abort'?"),
         (["goto", "1", "2"], "goto: expected 3 numbers EAST NORTH UP [YAW_DEG], got 2"),

@@ -51,10 +51,32 @@ RECORDED = {"px4": PX4_1_14, "ardupilot": COPTER_4_7}
 
 
 def said(autopilot: str, about: str, **changed: float) -> Finding:
-    """What is said of one case where these parameters are other than recorded."""
+    """What is said of one case where these parameters are other than recorded; how it is mended is
+    a test of its own."""
     values = {**RECORDED[autopilot], **changed}
     (found,) = (each for each in findings(autopilot, values, LIMITS) if each.about == about)
-    return found
+    return replace(found, mends=())
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "changed", "mends"),
+    [
+        ("px4", {"NAV_DLL_ACT": 0}, (("NAV_DLL_ACT", 2),)),
+        ("px4", {"NAV_DLL_ACT": 1, "COM_DL_LOSS_T": 300}, (("COM_DL_LOSS_T", 10),)),
+        (
+            "px4",
+            {"NAV_DLL_ACT": 0, "COM_DL_LOSS_T": 300},
+            (("NAV_DLL_ACT", 2), ("COM_DL_LOSS_T", 10)),
+        ),
+        ("ardupilot", {"FS_GCS_ENABLE": 0}, (("FS_GCS_ENABLE", 1),)),
+    ],
+)
+def test_what_is_weak_is_mended_by_as_little_as_is_enough(
+    autopilot: str, changed: dict[str, float], mends: tuple[tuple[str, float], ...]
+) -> None:
+    found = findings(autopilot, {**RECORDED[autopilot], **changed}, LIMITS)
+    (station,) = (each for each in found if each.about == "ground-station loss")
+    assert station.mends == mends
 
 
 def test_what_a_px4_does_as_delivered() -> None:

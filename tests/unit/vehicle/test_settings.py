@@ -145,6 +145,11 @@ class Script:
         return [item.weak for item in self.found if isinstance(item, FailsafesKnown)]
 
     @property
+    def mends(self) -> list[tuple[str, ...]]:
+        """The commands that are named to mend it."""
+        return [item.mends for item in self.found if isinstance(item, FailsafesKnown)]
+
+    @property
     def return_up_m(self) -> list[float | None]:
         return [item.up_m for item in self.found if isinstance(item, ReturnHeightKnown)]
 
@@ -223,22 +228,23 @@ def test_a_return_height_that_is_lost_on_the_way_is_asked_for_until_it_comes() -
 
 
 @pytest.mark.parametrize(
-    ("autopilot", "params", "name", "about"),
+    ("autopilot", "params", "name", "about", "mended"),
     [
-        (PX4, PX4_ON, "NAV_DLL_ACT", "ground-station loss"),
-        (PX4, PX4_ON, "GF_ACTION", "geofence breach"),
-        (PX4, PX4_ON, "COM_LOW_BAT_ACT", "low battery"),
-        (ARDUPILOT, ARDUPILOT_ON, "FS_GCS_ENABLE", "ground-station loss"),
-        (ARDUPILOT, ARDUPILOT_ON, "FENCE_ENABLE", "geofence breach"),
-        (ARDUPILOT, ARDUPILOT_ON, "BATT_FS_LOW_ACT", "low battery"),
+        (PX4, PX4_ON, "NAV_DLL_ACT", "ground-station loss", 2),
+        (PX4, PX4_ON, "GF_ACTION", "geofence breach", 2),
+        (PX4, PX4_ON, "COM_LOW_BAT_ACT", "low battery", 3),
+        (ARDUPILOT, ARDUPILOT_ON, "FS_GCS_ENABLE", "ground-station loss", 1),
+        (ARDUPILOT, ARDUPILOT_ON, "FENCE_ENABLE", "geofence breach", 1),
+        (ARDUPILOT, ARDUPILOT_ON, "BATT_FS_LOW_ACT", "low battery", 2),
     ],
 )
-def test_a_failsafe_that_is_off_is_named(
-    autopilot: Autopilot, params: dict[str, float | None], name: str, about: str
+def test_a_failsafe_that_is_off_is_named_with_what_mends_it(
+    autopilot: Autopilot, params: dict[str, float | None], name: str, about: str, mended: int
 ) -> None:
     script = Script(autopilot, {**params, name: 0})
     script.start()
     assert script.weak == [(f"{about}: off ({name} = 0)",)]
+    assert script.mends == [(f"gcs param set {name} {mended}",)]
 
 
 def test_a_failsafe_that_nothing_is_known_of_is_not_taken_for_on() -> None:

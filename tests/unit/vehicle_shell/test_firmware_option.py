@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from click.testing import CliRunner
 
@@ -9,7 +11,7 @@ from vehicle_sim import cli
 from vehicle_sim.autopilot.firmware import FIRMWARES
 from vehicle_sim.autopilot.interface import Geodetic
 from vehicle_sim.autopilot.parameters.parameters import ParameterError
-from vehicle_sim.cli import Options, main, plan_of
+from vehicle_sim.cli import Options, _BadFileError, main, plan_of
 from vehicle_sim.shell.runtime import VehicleSetup, parameters_of
 
 
@@ -63,3 +65,21 @@ def test_an_older_firmwares_name_is_no_parameter(monkeypatch: pytest.MonkeyPatch
     plan = plan_of(options([*words, "--port", "0"], monkeypatch))
     with pytest.raises(ParameterError, match="RTL_ALT"):
         parameters_of(plan, VehicleSetup(1, Geodetic(0.0, 0.0, 0.0), ()))
+
+
+def test_parameters_of_a_file_are_kept_whatever_their_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "a.parm"
+    file.write_text("# saved\nRTL_ALT_M 22\nNOBODYS,0.5\nMAV_SYSID 9\n")
+    words = ["--autopilot", "ardupilot", "--firmware", "4.7", "--port", "0"]
+    plan = plan_of(options([*words, "--param-file", str(file)], monkeypatch))
+    parameters = parameters_of(plan, VehicleSetup(7, Geodetic(0.0, 0.0, 0.0), ()))
+    names = ("RTL_ALT_M", "NOBODYS", "MAV_SYSID")
+    assert [parameters.value(name) for name in names] == [22.0, 0.5, 7.0]
+    parameters.set("NOBODYS", 2.0)
+    parameters.reset()
+    assert parameters.value("NOBODYS") == 0.5
+    file.write_text("RTL_ALT_M 22\nRTL_ALT_M\n")
+    with pytest.raises(_BadFileError, match=r"a\.parm:2"):
+        plan_of(options([*words, "--param-file", str(file)], monkeypatch))

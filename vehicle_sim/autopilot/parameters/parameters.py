@@ -8,6 +8,7 @@ value with which it can fly: both real autopilots take almost any value.
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
@@ -152,6 +153,26 @@ def _known(personality: Personality, firmware: Firmware) -> _Known:
     return _Known(specs, canonical, renamed, names, stored, in_use)
 
 
+def _with_others(known: _Known, names: Iterable[str]) -> _Known:
+    """Those that no table has are kept as floats, in the order of names."""
+    inert = {
+        name: ParameterSpec(name, StoredAs.REAL32, 0.0, -inf, inf, "of a file", inert=True)
+        for name in names
+        if name not in known.specs
+    }
+    if not inert:
+        return known
+    zeros = dict.fromkeys(inert, 0.0)
+    return _Known(
+        dict(sorted({**known.specs, **inert}.items())),
+        {**known.canonical, **inert},
+        known.renamed,
+        {**known.canonical_names, **{name: name for name in inert}},
+        {**known.stored, **zeros},
+        {**known.in_use, **zeros},
+    )
+
+
 class Parameters:
     """The values of one vehicle.  `version` grows with every change."""
 
@@ -169,12 +190,20 @@ class Parameters:
         "version",
     )
 
-    def __init__(self, personality: Personality, firmware: Firmware | None = None) -> None:
-        """Of the usual firmware unless one is given.  Raises FirmwareError for another's."""
+    def __init__(
+        self,
+        personality: Personality,
+        firmware: Firmware | None = None,
+        others: Iterable[str] = (),
+    ) -> None:
+        """Of the usual firmware unless one is given.  Raises FirmwareError for another's.
+
+        `others` are floats that nothing here depends on, beside those of the tables.
+        """
         self.personality = personality
         self.rules: AutopilotRules = RULES[personality]
         self.firmware = firmware_of(personality, firmware)
-        self._known = _known(personality, self.firmware)
+        self._known = _with_others(_known(personality, self.firmware), others)
         self._stored = self._known.stored.copy()
         self._in_use = self._known.in_use.copy()
         self._si = _SI[personality]

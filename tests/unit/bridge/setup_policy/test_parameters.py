@@ -182,6 +182,15 @@ def test_a_value_that_is_not_known_is_told_so() -> None:
     assert note == "SDLOG_MODE = 1 is forwarded; it is not known now"
 
 
+def test_what_the_station_itself_sets_for_an_operator_is_no_stranger_s() -> None:
+    own = guard()
+    assert told(own, "GF_ACTION", bytewise(2), INT32) is None
+    own.written_by_station(ParamSet(bytewise(3), 1, 1, "GF_ACTION", INT32), NOW_NS)
+    change = own.heard(ParamValue(bytewise(3), 874, 10, "GF_ACTION", INT32), NOW_NS)
+    assert change is not None
+    assert change.text == "GF_ACTION was 2 and is 3 now: written by the station"
+
+
 def test_a_fence_that_is_switched_off_past_the_bridge_is_told_as_a_warning() -> None:
     own = guard()
     assert own.heard(ParamValue(bytewise(2), 874, 10, "GF_ACTION", INT32), NOW_NS) is None

@@ -1,0 +1,1 @@
+"""`gcs param`: the parameters of the vehicle, and files of them."""

@@ -1,0 +1,1 @@
+"""Files of parameters: read into one model, written in each format, compared."""
