@@ -16,9 +16,7 @@ As a Python library it flies through the same station process as the command lin
 .tlog as a numpy array.  Nothing of it is loaded before it is asked for.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING
-
+TYPE_CHECKING = False  # that of `typing`, which takes its time to load
 if TYPE_CHECKING:
     from gcs.logfile.columns.read import columns
     from gcs.operator.connect import connect
@@ -57,6 +55,12 @@ if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> object:
         """The library, loaded when it is used: every start of `gcs` imports this module."""
-        if name in __all__:
-            return getattr(import_module(_HOME.get(name, "gcs.operator.failures")), name)
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from importlib import import_module
+
+        return getattr(import_module(_HOME.get(name, "gcs.operator.failures")), name)
+
+    def __dir__() -> list[str]:
+        """With what `__getattr__` gives: `dir(gcs)` and Tab in a shell show the whole library."""
+        return sorted({*globals(), *__all__})

@@ -24,3 +24,4 @@ class ExitCode(IntEnum):
     ADDRESS_IN_USE = 9
     BUG = 70
     INTERRUPTED = 130
+    READER_GONE = 141  # as of a program that SIGPIPE ends: `gcs ... | head -1`

@@ -446,7 +446,7 @@ class BridgeLink(msgspec.Struct, frozen=True):
 class BridgeClient(msgspec.Struct, frozen=True):
     """One MAVLink client of a bridge: one peer on one client port."""
 
-    client: int  # its number among the operators, from 1000 up
+    client: int  # its number among the operators, from 1000 up; 0 = it is sent to, and not heard
     link: int
     name: str  # "udp 127.0.0.1:14551"
     ids: list[str] = []  # "255/190": who it has said that it is; empty before its first frame

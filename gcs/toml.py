@@ -23,6 +23,8 @@ from gcs.toml_lines import KeyPath, find_lines
 T = TypeVar("T")
 
 TOML_HINT = "each key once, as KEY = VALUE, under its [table]; see https://toml.io"
+WORDS_LISTED = 20
+"""More than these are no hint but a page."""
 _PAIR, _PAIRS = "[-5, 5]", "[[0, 0], [5, 0], [5, 5]]"
 
 
@@ -117,10 +119,15 @@ def dotted(at: KeyPath) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """A hint: the known word that is most like `word`, or all known words."""
+    """A hint: the known word that is most like `word`, or all known words, or a few of many."""
     words = sorted(known)
     near = difflib.get_close_matches(word, words, n=1)
-    return f"did you mean {near[0]}?" if near else f"known here: {', '.join(words)}"
+    if near:
+        return f"did you mean {near[0]}?"
+    if len(words) <= WORDS_LISTED:
+        return f"known here: {', '.join(words)}"
+    like = difflib.get_close_matches(word, words, n=3, cutoff=0.3) or words[:3]
+    return f"known here are {len(words)} keys, such as {', '.join(like)}"
 
 
 def none_of(value: object, words: Iterable[str]) -> tuple[str, str]:

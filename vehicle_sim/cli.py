@@ -80,7 +80,7 @@ class _BadFileError(Exception):
 @click.command(
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="Examples: vehicle-sim --autopilot ardupilot --wind 8,270,1.5  |  "
-    "vehicle-sim --count 20 --port 14550  |  vehicle-sim --speedup 10 --fault trouble.toml",
+    "vehicle-sim --count 20 --port 14550  |  vehicle-sim --speedup 10 --fault bad_day.toml",
 )
 @click.option(
     "--autopilot",
@@ -145,7 +145,9 @@ class _BadFileError(Exception):
 )
 @click.option("--wind", type=WindType(), default="0", help="In m/s and degrees, with gusts.")
 @click.option(
-    "--fault", type=click.Path(dir_okay=False), help="TOML file of what goes wrong, and when."
+    "--fault",
+    type=click.Path(dir_okay=False),
+    help="TOML file of what goes wrong, and when; bad_day.toml is shipped.",
 )
 @click.option(
     "--port",
@@ -334,7 +336,7 @@ def plan_of(options: Options) -> Plan:
     )
     faults: tuple[Timed, ...] = ()
     if options.fault is not None:
-        text = _read(options.fault).decode("utf-8", "replace")
+        text = _fault_file(options.fault).decode("utf-8", "replace")
         faults = parse_faults(text, options.fault)
     north, east, gust = options.wind
     return Plan(
@@ -384,6 +386,20 @@ def _read(path: str) -> bytes:
             return file.read()
     except OSError as error:
         raise _BadFileError(f"{path}: {error.strerror}") from error
+
+
+def _fault_file(name: str) -> bytes:
+    """The file as typed, else the shipped one of that name."""
+    from pathlib import Path
+
+    shipped = Path(__file__).with_name("examples") / name
+    if not Path(name).exists() and shipped.is_file():
+        return _read(str(shipped))
+    try:
+        return _read(name)
+    except _BadFileError as error:
+        hint = "Write one like bad_day.toml, which is shipped: vehicle-sim --fault bad_day.toml"
+        raise _BadFileError(f"{error}\nHint: {hint}") from error
 
 
 def run(options: Options) -> int:

@@ -87,14 +87,17 @@ class Bridge:
 
     # --------------------------------------------------------------------- come and go
 
-    def came(self, link: int, name: str, *, verified: bool = True) -> list[BridgeEffect]:
+    def came(
+        self, link: int, name: str, *, verified: bool = True, named: bool = False
+    ) -> list[BridgeEffect]:
         """A peer is there; it is a client with its first good frame.  Not `verified`: it is sent
-        nothing but heartbeats before that."""
-        self._by_link[link] = Client(link, name, self._timing, self._deadman_ns)
+        nothing but heartbeats before that.  `named` by the user: nobody need be there yet."""
+        self._by_link[link] = Client(link, name, self._timing, self._deadman_ns, named=named)
         if not verified:
             return [*self.unverified.come(link, name)]
         self.routes.open(link)
-        return [LogLine(Level.INFO, f"{name} has connected, on link {link}")]
+        how = "is sent to, and not heard yet" if named else "has connected"
+        return [LogLine(Level.INFO, f"{name} {how}, on link {link}")]
 
     def verify(self, link: int) -> list[BridgeEffect]:
         """The first frame of a peer that was `unverified` is good."""
@@ -177,7 +180,11 @@ class Bridge:
         client.begin(self._next_number)
         self._next_number += 1
         self._by_number[client.number] = client
-        return [Joined(client.number, f"MAVLink {frame.sysid}/{frame.compid}, {client.name}")]
+        told = [LogLine(Level.INFO, f"{client.name} has connected")] if client.named else []
+        return [
+            Joined(client.number, f"MAVLink {frame.sysid}/{frame.compid}, {client.name}"),
+            *told,
+        ]
 
     def name_of_link(self, link: int) -> str:
         """Of the client on it; else empty."""
@@ -410,7 +417,7 @@ class Bridge:
         """Every client, for a person to look at."""
         return [
             ipc.BridgeClient(
-                client=client.number,
+                client=client.number if client.joined else 0,
                 link=client.link,
                 name=client.name,
                 ids=[f"{s}/{c}" for s, c in self.routes.components(client.link)],

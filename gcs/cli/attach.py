@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from gcs.cli.options import LINK, TAKE, TIMEOUT, with_options
+from gcs.cli.options import LINK, SYSID, TAKE, TIMEOUT, with_options
 
 EPILOG = """\
 Examples:
@@ -29,7 +29,7 @@ chooses one.
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option(
     "--vehicle",
-    type=click.IntRange(1, 255),
+    type=SYSID,
     metavar="SYSID",
     help="--plain: this vehicle of a bridge, by its MAVLink system id.  [default: the first heard]",
 )

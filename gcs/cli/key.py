@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.options import DEFAULT_LINK, TIMEOUT, UTF8, VEHICLE, with_options
+from gcs.cli.options import DEFAULT_LINK, SYSID, TIMEOUT, UTF8, VEHICLE, with_options
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -27,7 +27,7 @@ KEY_LINK = click.Option(
 
 KEY_SYSID = click.Option(
     ["--sysid"],
-    type=click.IntRange(1, 255),
+    type=SYSID,
     help="The MAVLink system id to speak in: an ArduPilot that `gcs bridge --lock --enforce-sysid` "
     "locked hears that of its bridge, 255, alone.  [default: 254]",
 )
@@ -143,6 +143,7 @@ def over_link(setup: Setup, url: str, clock: Clock) -> None:
     from gcs.shell.endpoints import EndpointError, parse_endpoint
     from gcs.shell.key_setup import run
     from gcs.shell.sockets import AddressInUse, open_link
+    from gcs.shell.sockets.serial import SerialUnavailable
 
     try:
         opened = open_link(parse_endpoint(url))
@@ -151,6 +152,8 @@ def over_link(setup: Setup, url: str, clock: Clock) -> None:
     except AddressInUse as error:
         hint = "if it is a station of yours, end it first: gcs stations end"
         raise ExitError(ExitCode.ADDRESS_IN_USE, str(error), hint) from error
+    except SerialUnavailable as error:
+        raise ExitError(ExitCode.USAGE, f"{url}: {error}", error.hint) from error
     except OSError as error:
         raise ExitError(ExitCode.NO_VEHICLE, f"{url}: {error.strerror or error}") from error
     try:

@@ -37,7 +37,7 @@ class LineQueue:
         """`name` is what errors call it; `typed`: somebody types the lines on a terminal."""
         self._source = LineSource(fd, keep_blank=True)
         self._name = name
-        self._typed = typed
+        self.typed = typed
         self._number = 0
         self._waiting: deque[Line | BadLine] = deque()
 
@@ -52,7 +52,7 @@ class LineQueue:
     @property
     def typed_end(self) -> bool:
         """Whether somebody has ended the input on a terminal: as good as `quit`."""
-        return self._typed and self.ended
+        return self.typed and self.ended
 
     @property
     def full(self) -> bool:
@@ -70,10 +70,8 @@ class LineQueue:
             line = self._parse(text.decode(errors="replace"))
             if line is None:
                 continue
-            if isinstance(line, BadLine):
-                at_once = self._typed  # nobody who types waits for the news that it was in vain
-            else:
-                at_once = line.overtakes(typed=self._typed)
+            # Nobody who types waits for the news that a line was in vain.
+            at_once = self.typed if isinstance(line, BadLine) else line.overtakes(typed=self.typed)
             if at_once:
                 found.append(AtOnce(line, self._drop_for(line)))
             else:

@@ -151,7 +151,7 @@ def _print_version(ctx: click.Context, _param: click.Parameter, asked: bool) -> 
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Example: gcs demo\n\nExit codes: 0 done, 1 a check found something, 2 usage, 3 no "
     "link, 4 bad file, 5 refused by the vehicle, 6 refused by the gate, 7 recorder, 8 accepted but "
-    "not completed, 9 address in use, 70 bug, 130 interrupted.",
+    "not completed, 9 address in use, 70 bug, 130 interrupted, 141 the reader of a pipe has gone.",
 )
 @click.option(
     "--version",
@@ -184,11 +184,11 @@ def run(args: Sequence[str] | None = None) -> int:
     except (BrokenPipeError, SystemExit):
         # Whoever read our output has gone; click and rich make a SystemExit of it.
         _drop_output()
-        return ExitCode.INTERRUPTED
+        return ExitCode.READER_GONE
     except Exception as bug:  # noqa: BLE001  the one place: a bug is told, not spilled
         if _reader_has_gone(bug):
             _drop_output()
-            return ExitCode.INTERRUPTED
+            return ExitCode.READER_GONE
         if isinstance(bug, OSError) and bug.errno in _NO_ROOM:
             _drop_output()
             click.echo(f"gcs: cannot write the output: {bug.strerror}", err=True)

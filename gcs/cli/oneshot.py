@@ -20,6 +20,7 @@ from gcs.cli.options import (
     Seconds,
     asked_for,
     station_config,
+    typed,
 )
 from gcs.operator import line_parser
 
@@ -71,14 +72,13 @@ def _command(name: str) -> click.Command:
         )
         stops = all(request.word in request_words.STOPS for request in action.requests)
         placed = name not in ("abort", "hold")
-        anywhere = stops and not links
         how = oneshot_session.OneShotConfig(
             timeout,
             wait,
             as_json,
             name,
             placed=placed,
-            anywhere=anywhere,
+            anywhere=not typed("links"),
             take=take,
             stops=stops,
             wanted=asked_for(),
@@ -138,7 +138,7 @@ def _status(
         as_json,
         "status",
         cautions=True,
-        anywhere=not links,
+        anywhere=not typed("links"),
         wanted=asked_for(),
     )
     code = oneshot_session.run(setup, how, partial(report, as_json=as_json))

@@ -26,10 +26,13 @@ from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.interrupts import Interrupts
+from gcs.operator.standstill import Standstill
 from gcs.operator.warning_filter import WARNING, WarningFilter
 from gcs.request_words import REQUESTS, SendRequests
 from gcs.shell.stations import Description
 
+STANDS_WAIT_S = 15.0
+"""How long a stop that is complete is watched until the vehicle stands."""
 Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
 """What to do once a vehicle is heard.  It clears the display before it prints anything itself."""
 
@@ -98,14 +101,15 @@ def run_over(
 ) -> int:
     """The same with a station that is there already."""
     warnings = WarningFilter(cautions=how.cautions)
+    standstill = Standstill()
     with ProgressDisplay(how.what, connection.now_s()) as display:
 
         def on_event(event: ipc.Event, request: TrackedRequest | None) -> None:
             display.update(event, connection.now_s())
             if warnings.hides(event, request):
                 return
-            shown = request if how.told else None
-            for line, err in _lines(event, shown, as_json=how.as_json):
+            seen, shown = dialogue.snapshot, request if how.told else None
+            for line, err in _lines(event, shown, seen, standstill, as_json=how.as_json):
                 display.clear()
                 click.echo(line, err=err)
 
@@ -120,6 +124,7 @@ def run_over(
                 if not taken.completed:
                     return _left(dialogue, taken.exit_code, display)
             code = task(dialogue, display)
+            dialogue.wait_until(lambda: not standstill.stopping, min(how.wait_s, STANDS_WAIT_S))
         except Interrupted:
             ended = dialogue.leave("interrupted")
             display.clear()
@@ -166,7 +171,12 @@ def sending(action: SendRequests, wait_s: float) -> Task:
 
 
 def _lines(
-    event: ipc.Event, request: TrackedRequest | None, *, as_json: bool
+    event: ipc.Event,
+    request: TrackedRequest | None,
+    seen: ipc.Snapshot | None,
+    standstill: Standstill,
+    *,
+    as_json: bool,
 ) -> Iterator[tuple[str, bool]]:
     """What to print of an event, and whether it goes to standard error."""
     match event:
@@ -176,7 +186,10 @@ def _lines(
             if event.outcome != "accepted":
                 yield event_text.verdict_line(request.label, event), False
         case ipc.EndingEvent() if request is not None:
-            yield event_text.outcome_line(request.label, event), False
+            yield standstill.outcome(request.label, event, seen), False
+        case ipc.Snapshot():
+            if stands := standstill.news(event):
+                yield stands, False
         case ipc.LogEvent() if event.level >= WARNING:
             yield event_text.log_line(event), True
         case ipc.Trouble() if not event.exit_code:

@@ -57,6 +57,21 @@ class Seconds(FiniteRange):
         super().__init__(min=0, min_open=True)
 
 
+class SystemId(click.IntRange):
+    """A vehicle's, or a ground station's, MAVLink system id."""
+
+    def __init__(self) -> None:
+        super().__init__(1, 255)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        try:
+            return int(super().convert(value, param, ctx))
+        except click.BadParameter:
+            self.fail(
+                f"{value!r} is no MAVLink system id, a whole number from 1 to 255.", param, ctx
+            )
+
+
 class Utf8Text(click.types.StringParamType):
     """What goes to a station goes as JSON, which has no other text; a file's name may be other."""
 
@@ -89,6 +104,7 @@ class RecordName(Utf8Text):
 RECORD_NAME_MAX = 80
 _RECORD_NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]*")
 UTF8 = Utf8Text()
+SYSID = SystemId()
 
 LINK = click.Option(
     ["--link", "links"],
@@ -123,7 +139,7 @@ TIMEOUT = click.Option(
 )
 VEHICLE = click.Option(
     ["--vehicle"],
-    type=click.IntRange(1, 255),
+    type=SYSID,
     default=None,
     metavar="SYSID",
     help="Which vehicle, by its MAVLink system id, where several are heard.",
@@ -154,13 +170,16 @@ AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, fo
 
 def asked_for() -> Wanted:
     """What of a station the present command line asks for by name."""
-    context = click.get_current_context()
+    params = click.get_current_context().params
+    wanted = {name: params[name] for name in ("policy", "log_dir", "vehicle") if typed(name)}
+    return Wanted(**wanted)
 
-    def typed(name: str) -> Any:
-        by_name = context.get_parameter_source(name) is not ParameterSource.DEFAULT
-        return context.params.get(name) if by_name else None
 
-    return Wanted(typed("policy"), typed("log_dir"), typed("vehicle"))
+def typed(name: str) -> bool:
+    """Whether the present command line itself names this parameter: a configuration file may say
+    where links are, and which policy is usual, but no more than that."""
+    source = click.get_current_context().get_parameter_source(name)
+    return source in (ParameterSource.COMMANDLINE, ParameterSource.ENVIRONMENT)
 
 
 def with_options(*options: click.Option) -> Callable[[F], F]:

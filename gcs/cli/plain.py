@@ -8,13 +8,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from gcs import ipc, request_words
-from gcs.cli.line_queue import BadLine, LineQueue
+from gcs.cli.line_queue import AtOnce, BadLine, LineQueue
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text, line_parser
 from gcs.operator.client import Polling, StationEnded
 from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
+from gcs.operator.standstill import Standstill
 from gcs.operator.warning_filter import WarningFilter
 
 FRESH_WAIT_S = 0.5
@@ -60,6 +61,7 @@ class Plain:
         self._out, self._err = out, err
         self._dialogue = Dialogue(connection, interrupts, self._on_event)
         self._warnings = WarningFilter(cautions=True)
+        self._standstill = Standstill()
         self._bad_lines = False
         self._dropped_lines = False
         self._overtaken = False
@@ -101,6 +103,8 @@ class Plain:
         for each in lines.read():
             for dropped in each.dropped:
                 self._tell_dropped(dropped, each.line)
+            if each.dropped and not lines.typed:
+                self._err(overtaken(each))
             self._act_at_once(each.line)
         if lines.typed_end:
             raise _LeaveNowError
@@ -231,6 +235,9 @@ class Plain:
                 waiting, self._until_heard = self._until_heard, []
                 for line in waiting:
                     self._send_at_once(line)
+            stands = self._standstill.news(event)
+            if stands and not self._config.as_json:
+                self._out(stands)
             return
         if isinstance(event, ipc.StreamVerdictEvent) and event.outcome != "accepted":
             self._velocity_refused = self._refused_velocities = True
@@ -246,7 +253,8 @@ class Plain:
                 label = self._velocity or "velocity"
                 self._out(event_text.answer_line(label, outcome, code, sentence))
             case ipc.EndingEvent() if request is not None:
-                self._out(event_text.outcome_line(request.label, event))
+                seen = self._dialogue.snapshot
+                self._out(self._standstill.outcome(request.label, event, seen))
             case ipc.LogEvent() if event.level >= self._config.min_level:
                 self._err(event_text.log_line(event))
             case ipc.Trouble() if not event.exit_code:
@@ -269,6 +277,18 @@ class Plain:
         if self._refused_velocities:
             undone = ExitCode.REFUSED_BY_GATE
         return self._dialogue.first_failure() or undone
+
+
+def overtaken(stop: AtOnce) -> str:
+    """What a script is told whose stop came before the lines that stand before it."""
+    assert isinstance(stop.line, line_parser.Line)
+    count, text = len(stop.dropped), stop.line.text.removeprefix("!")
+    lines = "the line before it is" if count == 1 else f"the {count} lines before it are"
+    in_turn = "hold" if text == "abort" else text
+    return (
+        f"gcs: {stop.line.text} acted as soon as it was read: {lines} not done\n"
+        f"  hint: write {in_turn} for a stop that waits for its turn"
+    )
 
 
 def stdin_input() -> LineQueue:

@@ -78,13 +78,15 @@ class ClientCame:
 
     The number of the link is free, and from the number of the vehicles' links up.  `name` is where
     it is ("udp 127.0.0.1:14551"); `stream`: its `Datagram`s are pieces of one byte stream.  Not
-    `verified`: a port with a key took it in, and whether it has the key is not known yet.
+    `verified`: a port with a key took it in, and whether it has the key is not known yet.  `named`:
+    the user named its place, so that it is sent to whether anybody is there or not.
     """
 
     link: int
     name: str
     stream: bool
     verified: bool = True
+    named: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -166,7 +166,7 @@ class ClientTable:
             return None
         rate_hz, splitter = self._limits.rate_hz, StreamSplitter() if peer.stream else None
         self._clients[link] = _Client(peer, now_ns, rate_hz, now_ns, splitter, verified)
-        self._arrivals.append(ClientCame(link, peer.name, peer.stream, verified))
+        self._arrivals.append(ClientCame(link, peer.name, peer.stream, verified, peer.stays))
         if not verified:
             self._unverified.append(link)
             self._new.add(link)

@@ -295,9 +295,9 @@ class Session:
                 return self._operators.signalled(name)
             case LinkEvent(_, text, trouble):
                 return [Log(Level.WARNING if trouble else Level.INFO, NODE, text)]
-            case ClientCame(link, name, stream, verified):
+            case ClientCame(link, name, stream, verified, named):
                 self._links.open(link, stream)
-                return [*self._bridge.bridge.came(link, name, verified=verified)]
+                return [*self._bridge.bridge.came(link, name, verified=verified, named=named)]
             case ClientGone(link, reason):
                 self._links.close(link)
                 self._signatures.forget(link)

@@ -143,7 +143,7 @@ class VehicleParts:
 
     def ask_for_missing(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
         """What of it is needed and did not come yet."""
-        told = self.discovery.silence(telemetry)
+        told = self.discovery.silence(telemetry, now_ns)
         work: list[Work] = [Log(Level.WARNING, NODE, told)] if told else []
         for command in self.discovery.missing(telemetry, now_ns):
             work += self.commands.send_own(command, now_ns)

@@ -44,6 +44,13 @@ def test_a_port_that_is_taken_is_a_clear_error_with_a_hint(scheme: str) -> None:
     assert "Traceback" not in ended.stderr
 
 
+def test_a_fault_file_that_is_not_there_is_an_error_that_names_the_shipped_one() -> None:
+    ended = run("--fault", "trouble.toml")
+    assert ended.returncode == 4
+    assert "trouble.toml: No such file or directory\nHint: " in ended.stderr
+    assert "vehicle-sim --fault bad_day.toml" in ended.stderr
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -82,11 +82,14 @@ class Rate:
 class Client:
     """One peer; an operator with a number of its own from its first good frame on."""
 
-    def __init__(self, link: int, name: str, timing: Timing, deadman_ns: int) -> None:
+    def __init__(
+        self, link: int, name: str, timing: Timing, deadman_ns: int, *, named: bool = False
+    ) -> None:
         """`name` is where it is; `timing` is of the plans that it sends; one sample of its
-        setpoint streams counts for `deadman_ns`."""
+        setpoint streams counts for `deadman_ns`.  `named`: it is sent to before it is heard."""
         self.link = link
         self.name = name
+        self.named = named
         self.timing = timing
         self.deadman_ns = deadman_ns
         self.joined = False

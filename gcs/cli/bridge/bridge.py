@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import click
 
-from gcs.cli.options import UTF8, RecordName, Seconds, with_options
+from gcs.cli.options import SYSID, UTF8, RecordName, Seconds, with_options
 from gcs.cli.station_options import STATION_OPTIONS, OfStation, new_station
 
 if TYPE_CHECKING:
@@ -85,14 +85,14 @@ OWN_COMPID = 191
 )
 @click.option(
     "--target",
-    type=click.IntRange(1, 255),
+    type=SYSID,
     metavar="SYSID",
     help="Fly this vehicle alone, by its MAVLink system id; clients see others on the link, and "
     "command none of them.  [default: every one that is heard]",
 )
 @click.option(
     "--sysid",
-    type=click.IntRange(1, 255),
+    type=SYSID,
     default=255,
     show_default=True,
     help="The bridge's own MAVLink system id.",

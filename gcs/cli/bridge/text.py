@@ -133,6 +133,8 @@ def _client_row(each: ipc.BridgeClient) -> Row:
     notes = ["IN CONTROL"] if each.in_control else []
     if each.silent_s >= LONG_SILENCE_S:
         notes.append(f"silent for {each.silent_s:.0f} s")
+    elif not each.client and each.verified:
+        notes.append("not heard")
     if not each.verified:
         notes.append("not verified")
     if each.signed:
@@ -153,14 +155,16 @@ def status_line(status: ipc.BridgeStatus, seen: ipc.Snapshot | None) -> str:
     """One line for all: `bridge: 1 link 212/s in, 4/s out, 0.0 % lost; 2 clients ...`."""
     rx_hz, tx_hz = sum(x.rx_hz for x in status.links), sum(x.tx_hz for x in status.links)
     lost_pct = max((each.lost_pct for each in status.links), default=0.0)
-    count = len(status.clients)
+    heard = [each for each in status.clients if each.client or not each.verified]
+    count, unheard = len(heard), len(status.clients) - len(heard)
     unverified = sum(not each.verified for each in status.clients)
     refused = sum(each.refused for each in status.clients)
     dropped = sum(each.dropped for each in status.clients)
     return (
         f"bridge: {rx_hz:.0f}/s in, {tx_hz:.0f}/s out, {lost_pct:.1f} % lost; "
         f"{count} client{'' if count == 1 else 's'}"
-        f"{f' ({unverified} not verified)' if unverified else ''}, {refused} refused"
+        f"{f' ({unverified} not verified)' if unverified else ''}"
+        f"{f' ({unheard} not heard)' if unheard else ''}, {refused} refused"
         f"{f', {dropped} dropped' if dropped else ''}; "
         f"in control: {control_line(seen)}"
     )

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.options import UTF8, FiniteRange
+from gcs.cli.options import SYSID, UTF8, FiniteRange
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -54,9 +54,7 @@ KEYS_HELP = "space pause, left/right 5 s, down/up 30 s, + - speed, 0 begin, q en
 @click.option("--loop", is_flag=True, help="Begin again at the end.")
 @click.option("--from", "from_s", type=FiniteRange(min=0), metavar="S", help="Begin S seconds in.")
 @click.option("--to", "to_s", type=FiniteRange(min=0), metavar="S", help="End S seconds in.")
-@click.option(
-    "--vehicle", type=click.IntRange(1, 255), metavar="SYSID", help="This vehicle's frames only."
-)
+@click.option("--vehicle", type=SYSID, metavar="SYSID", help="This vehicle's frames only.")
 def replay(
     file: Path,
     links: tuple[str, ...],

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from gcs.cli.options import SYSID
 from gcs.cli.record_files import RECORD, reading_progress, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
@@ -22,7 +23,7 @@ from gcs.operator.errors import ExitError
 )
 @click.option(
     "--vehicle",
-    type=click.IntRange(1, 255),
+    type=SYSID,
     metavar="SYSID",
     help="Whose flight the page is about; without it, that of the one that flew longest.",
 )

@@ -20,6 +20,7 @@ from gcs.cli.options import (
     Seconds,
     asked_for,
     station_config,
+    typed,
     with_options,
 )
 from gcs.exit_codes import ExitCode
@@ -184,6 +185,7 @@ def _run(word: str, *arguments: str | int, **to: Unpack[ToVehicle]) -> None:
         to["as_json"],
         what,
         take=to["take"],
+        anywhere=not typed("links"),
         wanted=asked_for(),
     )
     task = oneshot_session.sending(action, to["wait"])

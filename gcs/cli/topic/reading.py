@@ -138,6 +138,12 @@ def nothing_heard(where: Where, wanted: Sequence[Selector]) -> ExitError:
     return ExitError(ExitCode.NO_VEHICLE, f"{names}: not heard", hint)
 
 
+def no_such_message(wanted: Selector) -> ExitError:
+    """What is written as MAVLink's names are, and is none of them: it need not be waited for."""
+    hint = _near([wanted]) or "gcs topic list tells what is sent"
+    return ExitError(ExitCode.USAGE, f"{wanted.text}: MAVLink has no message of that name", hint)
+
+
 def _near(wanted: Sequence[Selector]) -> str:
     """The dialect's name that somebody may have meant."""
     import difflib

@@ -15,6 +15,7 @@ from gcs.cli.topic.reading import (
     condition_of,
     decoded,
     ended_by_hand,
+    no_such_message,
     nothing_heard,
     selected,
     selectors,
@@ -302,6 +303,8 @@ def info(
     known = message_info(selector.topic.rpartition("/")[2])
     where = Where(log_file, last, links)
     senders: dict[str, Intervals] = {}
+    if known is None and not where.recorded and selector.topic.isupper():
+        raise no_such_message(selector)
     looked = where.recorded or bool(links) or known is None
     if looked:
         with ended_by_hand():

@@ -69,18 +69,20 @@ class Discovery:
         self._asked_ns = 0
         self._pause_ns = self._ask_again_ns
 
-    def silence(self, telemetry: Telemetry) -> str:
+    def silence(self, telemetry: Telemetry, now_ns: int) -> str:
         """That its positions stopped, though it is heard, where that is news: streams are asked
         for again, as a vehicle that restarted sends none.  Before `missing`."""
-        if not self._silent(telemetry):
+        if not self._silent(telemetry, now_ns):
             self._silence_told, self._pause_ns = False, self._ask_again_ns
             return ""
         told, self._silence_told = self._silence_told, True
         said = f"vehicle {telemetry.label} is heard and sends no positions any more"
         return "" if told else f"{said}: it is asked for its streams again"
 
-    def _silent(self, telemetry: Telemetry) -> bool:
+    def _silent(self, telemetry: Telemetry, now_ns: int) -> bool:
         """It is heard, and has been for long enough since its last position."""
+        if now_ns - telemetry.heard_ns >= self._ask_again_ns:
+            return False  # nothing at all comes, which is another trouble
         came_ns = telemetry.position_came_ns
         since_ns = max(came_ns, telemetry.heard_again_ns)
         return came_ns > 0 and telemetry.heard_ns - since_ns > self._ask_again_ns
@@ -98,7 +100,7 @@ class Discovery:
         if first:
             yield _request(telemetry, MsgId.AUTOPILOT_VERSION)
         everything = first or telemetry.pos_ned is None
-        if self._silent(telemetry) and now_ns - self._streams_asked_ns >= self._pause_ns:
+        if self._silent(telemetry, now_ns) and now_ns - self._streams_asked_ns >= self._pause_ns:
             everything = True
             self._pause_ns = min(2 * self._pause_ns, self._longest_ns)
         if everything:

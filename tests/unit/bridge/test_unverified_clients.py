@@ -88,6 +88,15 @@ def test_the_log_has_that_it_came_and_went() -> None:
     assert went == ["udp 2, not verified, has gone: silent for 10 s"]
 
 
+def test_a_place_that_the_user_named_has_connected_once_it_is_heard() -> None:
+    table = Table(clients=0)
+    came = notes(table.bridge.came(STRANGER, "udp 2", named=True))
+    assert came == ["udp 2 is sent to, and not heard yet, on link 2"]
+    assert [each.client for each in table.bridge.status(table.now_ns)] == [0]
+    assert notes(table.says(HEARTBEAT, STRANGER).effects) == ["udp 2 has connected"]
+    assert [each.client for each in table.bridge.status(table.now_ns)] == [1000]
+
+
 def test_a_crowd_that_comes_and_goes_does_not_fill_the_log() -> None:
     table = Table(clients=0)
     told: list[str] = []

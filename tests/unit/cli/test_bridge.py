@@ -245,6 +245,13 @@ def test_a_client_that_is_not_verified_is_named_so() -> None:
     assert "2 clients (1 not verified), 0 refused;" in bridge_text.status_line(status, snapshot())
 
 
+def test_a_place_where_nobody_is_heard_is_no_client() -> None:
+    named = ipc.BridgeClient(0, 3, "udp 127.0.0.1:14550")
+    status = ipc.BridgeStatus(0, [LINK], [named])
+    assert bridge_text.client_rows(status)[1][-1] == "not heard"
+    assert "0 clients (1 not heard), 0 refused;" in bridge_text.status_line(status, snapshot())
+
+
 # ------------------------------------------------------------------------------------ lines
 
 

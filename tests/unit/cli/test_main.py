@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 import pytest
 
+import gcs as gcs_library
 from gcs import request_words, resources
 from gcs.cli import main, oneshot, oneshot_session
 from gcs.config import StationConfig
@@ -244,7 +245,7 @@ def test_a_reader_that_has_gone_ends_it_quietly() -> None:
             text=True,
             check=False,
         )
-    assert result.returncode == ExitCode.INTERRUPTED
+    assert result.returncode == ExitCode.READER_GONE
     assert result.stderr == ""
 
 
@@ -337,3 +338,25 @@ def test_the_details_of_a_bug_are_kept_whatever_was_typed(
     assert gcs("land").exit_code == ExitCode.BUG
     (details,) = tmp_path.iterdir()
     assert "gcs land not-" in details.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        ("mission check missions", ExitCode.BAD_FILE, "missions: is a folder\n  hint: name a file"),
+        ("topic info NOSUCHMSG", ExitCode.USAGE, "MAVLink has no message of that name"),
+        ("topic info ATITUDE", ExitCode.USAGE, "hint: did you mean 'ATTITUDE'?"),
+        (
+            "status --vehicle me",
+            ExitCode.USAGE,
+            "'me' is no MAVLink system id, a whole",
+        ),
+    ],
+)
+def test_what_is_typed_wrong_is_named(words: str, code: int, told: str) -> None:
+    assert gcs(*words.split()).exit_code == code
+    assert told in gcs(*words.split()).output
+
+
+def test_the_library_is_seen_by_whoever_asks_what_there_is() -> None:
+    assert set(gcs_library.__all__) <= set(dir(gcs_library))

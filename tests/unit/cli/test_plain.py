@@ -264,6 +264,10 @@ def test_an_abort_in_a_pipe_acts_while_a_goto_is_under_way_and_drops_what_has_no
 def test_an_abort_in_a_script_drops_the_lines_before_it() -> None:
     session = Session("arm\ntakeoff 2\nabort\nphoto\n")
     assert session.sent_words == ["abort", "photo"]
+    assert (
+        "gcs: abort acted as soon as it was read: the 2 lines before it are not done\n"
+        "  hint: write hold for a stop that waits for its turn"
+    ) in session.err
 
 
 def test_strict_counts_what_was_dropped() -> None:

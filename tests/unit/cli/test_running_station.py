@@ -96,15 +96,24 @@ def test_control_is_taken_over_only_when_that_is_asked_for(connection: FakeConne
     assert words(connection)[0] == "station_take"
 
 
-def test_the_only_station_will_do_for_a_stop_without_a_link_and_for_nothing_else(
+DEFAULT = ("udpin://127.0.0.1:14550",)
+
+
+@pytest.mark.parametrize("line", ["abort", "goto 1 0 2"])
+def test_the_only_station_will_do_where_no_link_is_named(
+    connection: FakeConnection, line: str
+) -> None:
+    how = OneShotConfig(10.0, 60.0, as_json=False, what=line, anywhere=True)
+    assert run(line, how, DEFAULT) == ExitCode.DONE
+    assert words(connection)[-1] == line.split()[0]
+
+
+def test_a_link_that_is_named_is_not_the_one_of_a_station_elsewhere(
     connection: FakeConnection, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    default = ("udpin://127.0.0.1:14550",)
-    stop = OneShotConfig(10.0, 60.0, as_json=False, what="abort", stops=True, anywhere=True)
-    assert run("abort", stop, default) == ExitCode.DONE
-    goto = OneShotConfig(10.0, 60.0, as_json=False, what="goto")
+    named = OneShotConfig(10.0, 60.0, as_json=False, what="goto")
     with pytest.raises(AssertionError, match="of its own"):
-        run("goto 1 0 2", goto, default)
+        run("goto 1 0 2", named, DEFAULT)
     assert "name its link: --link udpin://127.0.0.1:47001" in capsys.readouterr().err
 
 

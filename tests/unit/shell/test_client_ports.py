@@ -395,7 +395,7 @@ def test_a_udp_port_that_sends_has_its_client_at_once_and_keeps_it(bench: Make) 
     there.settimeout(WAIT_S)
     port = there.getsockname()[1]
     here = bench(Endpoint(Kind.UDP_OUT, "127.0.0.1", port), UDP_IN, limits=ClientLimits(1))
-    assert here.turn() == [ClientCame(2, f"udp 127.0.0.1:{port}", False)]
+    assert here.turn() == [ClientCame(2, f"udp 127.0.0.1:{port}", False, named=True)]
     here.advance(100.0)
     here.udp(1).send(FRAME)
     assert [type(each) for each in here.turn()] == [LinkEvent]
@@ -413,13 +413,13 @@ def test_a_tcp_connection_from_here_is_made_again_after_a_loss(bench: Make) -> N
     port = server.getsockname()[1]
     here.ports.open(Endpoint(Kind.TCP_OUT, "127.0.0.1", port))
     came = here.until(ClientCame)
-    assert ClientCame(2, f"tcp 127.0.0.1:{port}", True) in came
+    assert ClientCame(2, f"tcp 127.0.0.1:{port}", True, named=True) in came
     accepted, _ = server.accept()
     accepted.sendall(FRAME)
     assert here.until(Datagram)[-1] == Datagram(2, FRAME)
     accepted.close()
     assert ClientGone(2, "the connection was lost") in here.until(ClientGone)
-    assert ClientCame(2, f"tcp 127.0.0.1:{port}", True) in here.until(ClientCame)
+    assert ClientCame(2, f"tcp 127.0.0.1:{port}", True, named=True) in here.until(ClientCame)
 
 
 class PtyPort:
@@ -453,7 +453,7 @@ def line(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 
 def test_a_serial_line_is_one_client(bench: Make, line: int) -> None:
     here = bench(Endpoint(Kind.SERIAL, device="/dev/ttyUSB7", baud=57_600))
-    assert here.turn() == [ClientCame(2, "serial /dev/ttyUSB7", True)]
+    assert here.turn() == [ClientCame(2, "serial /dev/ttyUSB7", True, named=True)]
     os.write(line, FRAME)
     assert here.until(Datagram) == [Datagram(2, FRAME)]
     here.ports.send(2, FRAME)

@@ -219,7 +219,7 @@ def test_whom_the_user_named_is_verified_as_it_comes_and_has_a_place() -> None:
     door = Door(max_clients=2)
     named = door.comes(named=True)
     assert named is not None
-    assert door.turn()[0] == ClientCame(FIRST_LINK, "peer 1", False, True)
+    assert door.turn()[0] == ClientCame(FIRST_LINK, "peer 1", False, True, named=True)
     one = door.verified()
     third = door.verified()
     assert [link for link, _ in gone(door.turn())] == [third]

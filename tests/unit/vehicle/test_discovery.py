@@ -133,7 +133,16 @@ def heard_after(script: Script, seconds: int) -> str:
     """What is told of missing positions when a frame has come."""
     script.now_ns += seconds * SECOND_NS
     script.telemetry.heard_ns = script.now_ns
-    return script.discovery.silence(script.telemetry)
+    return script.discovery.silence(script.telemetry, script.now_ns)
+
+
+def test_of_a_link_that_is_wholly_out_it_is_not_said_that_the_vehicle_is_heard() -> None:
+    """Positions stopped, and after a last heartbeat everything did."""
+    script = silent(Script())
+    script.telemetry.heard_ns = script.now_ns + 3 * SECOND_NS
+    script.now_ns += 6 * SECOND_NS
+    assert script.discovery.silence(script.telemetry, script.now_ns) == ""
+    assert not rates_hz(list(script.discovery.missing(script.telemetry, script.now_ns)))
 
 
 def test_a_vehicle_that_is_not_heard_has_not_stopped_its_positions() -> None:
@@ -141,7 +150,7 @@ def test_a_vehicle_that_is_not_heard_has_not_stopped_its_positions() -> None:
     script = silent(Script())
     ask(script, 0.5)
     script.now_ns += 10 * SECOND_NS
-    assert script.discovery.silence(script.telemetry) == ""
+    assert script.discovery.silence(script.telemetry, script.now_ns) == ""
     script.telemetry.heard_again_ns = script.now_ns
     assert heard_after(script, 0) == heard_after(script, 2) == ""
     assert "sends no positions" in heard_after(script, 1)
