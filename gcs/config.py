@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
+DEFAULT_LINK = "udpin://127.0.0.1:14550"
+"""Where vehicles are looked for if nobody says where."""
 SIM_SYSID = 1
 """The system id of a vehicle of the station's own: vehicle-sim's default."""
 

@@ -70,9 +70,10 @@ def attach(
         with Interrupts() as interrupts:
             console = Plain(connection, interrupts, how, to_stdout, to_stderr)
             ctx.exit(console.run(stdin_input()))
+    from gcs.cli.settings import configured_keymap
     from gcs.tui.app import FlyApp
     from gcs.tui.result import print_result, until_hello
 
-    app = FlyApp(station, until_hello(station))
+    app = FlyApp(station, until_hello(station), keymap=configured_keymap())
     app.run()
     ctx.exit(print_result(app.result, lambda line: click.echo(line, err=True)))

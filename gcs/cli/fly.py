@@ -8,10 +8,12 @@ import click
 
 from gcs.cli.live_option import LIVE, open_beside
 from gcs.cli.options import LINK, UTF8, VEHICLE, RecordName, Seconds, with_options
+from gcs.cli.settings import configured, configured_keymap
 from gcs.cli.station_options import STATION_OPTIONS, OfStation, new_station
 
 if TYPE_CHECKING:
     from gcs.config import StationConfig
+    from gcs.tui.keymap import Keymap
 
 EPILOG = """\
 Examples:
@@ -35,6 +37,12 @@ understood is passed over and makes it 2.
 
 
 PLAIN_TIMEOUT_S = 10.0
+
+
+def usual_timeout_s() -> float:
+    """How long --plain waits for a vehicle where no option says it."""
+    found = configured("timeout_s")
+    return PLAIN_TIMEOUT_S if found is None else float(found.value)
 
 
 @click.command(epilog=EPILOG)
@@ -98,7 +106,7 @@ def fly(
         of,
         link_option="--link",
         name=name,
-        timeout_s=timeout or PLAIN_TIMEOUT_S,
+        timeout_s=timeout or usual_timeout_s(),
         vehicle=vehicle,
     )
     config = msgspec.structs.replace(config, keep=keep)
@@ -108,7 +116,7 @@ def fly(
     if plain:
         level = 1 if verbose else 3 if quiet else 2
         ctx.exit(_fly_plain(config, live, min_level=level, as_json=as_json, strict=strict))
-    ctx.exit(_fly_keyboard(config, live, timeout, mission_path))
+    ctx.exit(_fly_keyboard(config, live, timeout, mission_path, configured_keymap()))
 
 
 def _fly_plain(
@@ -164,6 +172,7 @@ def _fly_keyboard(
     live: tuple[str, int] | None,
     timeout_s: float | None,
     mission_path: str,
+    keymap: Keymap,
 ) -> int:
     needs_a_terminal()
     from gcs import ipc
@@ -184,7 +193,7 @@ def _fly_keyboard(
             return ExitCode.INTERRUPTED
         told = open_beside(station, live, lambda line: click.echo(line, err=True))
         events += [ipc.LogEvent(0, Level.INFO, "live", line.strip()) for line in told]
-    app = FlyApp(station, events, mission_path=mission_path, timeout_s=timeout_s)
+    app = FlyApp(station, events, mission_path=mission_path, timeout_s=timeout_s, keymap=keymap)
     app.run()
     simulated = config.sim is not None
     code = print_result(app.result, lambda line: click.echo(line, err=True), simulated=simulated)

@@ -49,8 +49,8 @@ def graph(
 
     import msgspec
 
-    from gcs.cli.options import DEFAULT_LINK
     from gcs.cli.running import station_for
+    from gcs.cli.settings import usual_links
     from gcs.graph.svg import as_svg
     from gcs.graph.text import as_dot, as_text
     from gcs.graph.traffic import Traffic
@@ -62,8 +62,8 @@ def graph(
     if where.recorded:
         traffic = Traffic(recorded=True, where=where.path.name)
     else:
-        found = station_for(links or [DEFAULT_LINK], anywhere=not links)
-        name = Path(found.log_path).name if found else ", ".join(links or [DEFAULT_LINK])
+        found = station_for(links or usual_links(), anywhere=not links)
+        name = Path(found.log_path).name if found else ", ".join(links or usual_links())
         traffic = Traffic(recorded=found is not None, where=name)
     heard_any = False
     try:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.options import DEFAULT_LINK, SYSID, TIMEOUT, UTF8, VEHICLE, with_options
+from gcs.cli.options import SYSID, TIMEOUT, UTF8, VEHICLE, with_options
+from gcs.config import DEFAULT_LINK
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 

@@ -74,6 +74,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         ),
         "graph": Entry("gcs.cli.graph:graph", "Who sends what to whom, with rates; SVG, DOT."),
         "log": Entry("gcs.cli.log.log:log", "Recorded flights: info, layout, recover, replay."),
+        "config": Entry("gcs.cli.config:config", "The file mavgate.toml: show, check, init."),
         "fsa": Entry("gcs.cli.fsa:fsa", "The gate's state machine, printed from its table."),
     },
 }

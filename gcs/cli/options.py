@@ -10,12 +10,12 @@ from typing import Any, TypeVar
 import click
 from click.core import ParameterSource
 
-from gcs.config import StationConfig, Wanted
+from gcs.cli.settings import Configured, usual_links
+from gcs.config import DEFAULT_LINK, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from gcs.operator.number_text import read_number, read_whole_number
 
-DEFAULT_LINK = "udpin://127.0.0.1:14550"
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -114,23 +114,26 @@ LINK = click.Option(
     help=f"Where the vehicle is: udpin:// udpout:// tcpin:// tcpout:// serial://, or pymavlink's "
     f"forms. May be given more than once.  [default: {DEFAULT_LINK}]",
 )
-POLICY = click.Option(
+POLICY = Configured(
     ["--policy"],
+    setting="policy",
     default="default",
     show_default=True,
     metavar="FILE|default|lab|demo",
     help="What the gate allows.",
 )
-LOG_DIR = click.Option(
+LOG_DIR = Configured(
     ["--log-dir"],
+    setting="log_dir",
     type=UTF8,
     default="logs",
     show_default=True,
     metavar="DIR",
     help="Where the flight is recorded.",
 )
-TIMEOUT = click.Option(
+TIMEOUT = Configured(
     ["--timeout"],
+    setting="timeout_s",
     type=Seconds(),
     default=10.0,
     show_default=True,
@@ -232,7 +235,7 @@ def station_config(
 ) -> StationConfig:
     """For a station that flies a vehicle which somebody else has started."""
     return StationConfig(
-        endpoints=list(links) or [DEFAULT_LINK],
+        endpoints=list(links) or usual_links(),
         policy_path=_policy_file(policy),
         log_dir=log_dir,
         name=name,

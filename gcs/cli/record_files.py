@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli.settings import usual_log_dir
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -18,6 +19,27 @@ if TYPE_CHECKING:
 
 RECORD = click.Path(exists=True, dir_okay=False, path_type=Path)
 """The type of an argument that names a record."""
+
+LAST = click.option("--last", is_flag=True, help="The newest record of the log folder.")
+
+
+def newest(files: Sequence[Path] = ()) -> Path:
+    """The newest of these records, else of the log folder.  Raises ExitError if there is none."""
+    folder = usual_log_dir()
+    found = files or list(folder.glob("*.mcap"))
+    if not found:
+        raise ExitError(ExitCode.BAD_FILE, f"{folder}/: no record in it", "name one")
+    return max(found, key=lambda file: file.stat().st_mtime_ns)
+
+
+def one_record(file: Path | None, *, last: bool) -> Path:
+    """FILE, or with --last the newest.  Raises UsageError where it is neither or both."""
+    if file is not None and last:
+        raise click.UsageError("--last is the newest record: leave out FILE, or --last")
+    if file is None and not last:
+        raise click.UsageError("Missing argument 'FILE'; --last is the newest record.")
+    return file or newest()
+
 
 NEW_RECORD = click.option(
     "-o",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gcs.cli.options import DEFAULT_LINK
+from gcs.cli.settings import usual_links
 from gcs.config import Wanted
 from gcs.exit_codes import ExitCode
 from gcs.operator.differences import differences, hint, sentence
@@ -39,7 +39,7 @@ def station_for(links: Sequence[str], *, anywhere: bool = False) -> Description 
 def others_running(links: Sequence[str]) -> list[str]:
     """What to say to somebody who has named no link, where stations run on other ones, or may run
     and not be found."""
-    if list(links) != [DEFAULT_LINK]:
+    if list(links) != usual_links():
         return []
     unsafe = why_no_station_is_found()
     if unsafe:
@@ -58,7 +58,7 @@ def the_station(links: Sequence[str]) -> Description:
     """The same for a command that needs one; without a link the default one's, or the only one.
 
     Raises ExitError with NO_VEHICLE if none runs."""
-    found = station_for(links or [DEFAULT_LINK], anywhere=not links)
+    found = station_for(links or usual_links(), anywhere=not links)
     if found is None:
         where = f" on {', '.join(links)}" if links else ""
         hint = "start one with gcs fly; gcs stations lists those that run"

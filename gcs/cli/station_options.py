@@ -124,7 +124,8 @@ def new_station(
     import msgspec
 
     from gcs.cli.bridge_places import refuse_shared_places
-    from gcs.cli.options import DEFAULT_LINK, station_config
+    from gcs.cli.options import station_config
+    from gcs.cli.settings import usual_links
     from gcs.config import SimConfig
 
     if of["sim"] and links:
@@ -134,7 +135,7 @@ def new_station(
     if not of["sim"]:
         refuse_options_of_the_sim(ctx)
     if of["clients"]:
-        vehicles = [] if of["sim"] else links or [DEFAULT_LINK]
+        vehicles = [] if of["sim"] else links or usual_links()
         refuse_shared_places(vehicles, of["clients"], vehicle_option=link_option)
     config = station_config(
         links,

@@ -86,7 +86,7 @@ class ClientCame:
     name: str
     stream: bool
     verified: bool = True
-    named: bool = False
+    named: bool | msgspec.UnsetType = msgspec.UNSET  # unset, it is not in the record
 
 
 @dataclass(frozen=True, slots=True)

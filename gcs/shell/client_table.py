@@ -17,6 +17,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
+import msgspec
+
 from gcs.session.inputs import ClientCame, ClientFlooded, ClientGone, Datagram, LinkEvent
 from gcs.wire.frame import (
     MAGIC_V1,
@@ -166,7 +168,8 @@ class ClientTable:
             return None
         rate_hz, splitter = self._limits.rate_hz, StreamSplitter() if peer.stream else None
         self._clients[link] = _Client(peer, now_ns, rate_hz, now_ns, splitter, verified)
-        self._arrivals.append(ClientCame(link, peer.name, peer.stream, verified, peer.stays))
+        named = peer.stays or msgspec.UNSET
+        self._arrivals.append(ClientCame(link, peer.name, peer.stream, verified, named))
         if not verified:
             self._unverified.append(link)
             self._new.add(link)

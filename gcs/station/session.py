@@ -297,7 +297,8 @@ class Session:
                 return [Log(Level.WARNING if trouble else Level.INFO, NODE, text)]
             case ClientCame(link, name, stream, verified, named):
                 self._links.open(link, stream)
-                return [*self._bridge.bridge.came(link, name, verified=verified, named=named)]
+                bridge = self._bridge.bridge
+                return [*bridge.came(link, name, verified=verified, named=named is True)]
             case ClientGone(link, reason):
                 self._links.close(link)
                 self._signatures.forget(link)

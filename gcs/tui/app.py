@@ -9,11 +9,10 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from time import monotonic
-from typing import ClassVar
 
 from rich.console import RenderableType
 from textual.app import App, ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import Binding, BindingsMap
 from textual.containers import Horizontal, Vertical
 from textual.events import Resize
 from textual.widget import Widget
@@ -26,7 +25,7 @@ from gcs.operator.station_loss import after_station_died
 from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.hang_up import on_hang_up
 from gcs.tui.keyboard import PendingGoal, VelocityKeys
-from gcs.tui.keys import ABORT, ACTIONS, KEYS
+from gcs.tui.keymap import DEFAULT, Keymap
 from gcs.tui.log_panel import LogPanel
 from gcs.tui.result import SessionResult
 from gcs.tui.scene import Answer, Scene
@@ -75,11 +74,6 @@ class FlyApp(App[None]):
     CSS_PATH = "fly.tcss"
     TITLE = "mavgate"
     ENABLE_COMMAND_PALETTE = False
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(name, f"press({name!r})", key.help, show=False, priority=True)
-        for key in KEYS
-        for name in key.names
-    ]
 
     def __init__(
         self,
@@ -88,10 +82,17 @@ class FlyApp(App[None]):
         *,
         mission_path: str = "",
         timeout_s: float | None = None,
+        keymap: Keymap = DEFAULT,
     ) -> None:
         """`events`: those that came already.  `mission_path`: what the mission key uploads first.
         `timeout_s`: leave if no vehicle is heard within it; None waits for ever."""
         super().__init__()
+        self._keys_of = keymap
+        self._bindings = BindingsMap(
+            Binding(name, f"press({name!r})", key.help, show=False, priority=True)
+            for key in keymap.keys
+            for name in key.names
+        )
         self._mission_path = mission_path
         self._timeout_s = timeout_s
         self._start_after: int | None = None
@@ -130,8 +131,8 @@ class FlyApp(App[None]):
         yield Panel(lambda _c, _r: vehicle_panel.goals(scene), "goals")
         yield Panel(lambda columns, _: vehicle_panel.answer(scene, columns), "answer")
         yield LogPanel()
-        yield Panel(lambda columns, _: frame_panels.footer(columns), "footer")
-        page = Panel(lambda _c, _r: frame_panels.help_table(), "help", "keys")
+        yield Panel(lambda columns, _: frame_panels.footer(columns, self._keys_of), "footer")
+        page = Panel(lambda _c, _r: frame_panels.help_table(self._keys_of), "help", "keys")
         page.border_subtitle = "any key closes this, Space aborts as well"
         yield page
         yield Panel(lambda _c, _r: frame_panels.farewell(scene), "farewell")
@@ -232,8 +233,8 @@ class FlyApp(App[None]):
         self.scene.note_key()
         self.interrupted = self.interrupted or name == "ctrl+c"
         self._start_after = None  # whoever presses another key has something else in mind
-        if not self._close_help() or name == ABORT:
-            await self.run_action(ACTIONS[name])
+        if not self._close_help() or name == self._keys_of.abort:
+            await self.run_action(self._keys_of.actions[name])
 
     def on_key(self) -> None:
         """A key that is not ours."""

@@ -7,7 +7,7 @@ from rich.text import Text
 
 from gcs.operator.control_text import operator_words
 from gcs.tui import look
-from gcs.tui.keys import KEYS, MOVES, SECTIONS
+from gcs.tui.keymap import DEFAULT, Keymap
 from gcs.tui.scene import Scene
 
 CONTROL_COLUMNS = 26
@@ -55,12 +55,12 @@ def _whole(age_s: float | None) -> str:
     return "?" if age_s is None else f"{age_s:.0f}"
 
 
-def footer(columns: int) -> Text:
+def footer(columns: int, keymap: Keymap = DEFAULT) -> Text:
     """The keys with a footer word, on as many lines as it takes."""
     lines = Text(end="", no_wrap=True)
     used = 0
-    items = [(key.shown, key.footer, key.loud) for key in KEYS if key.footer]
-    for shown, word, loud in ((MOVES, "move", False), *items):
+    items = [(key.shown, key.footer, key.loud) for key in keymap.keys if key.footer]
+    for shown, word, loud in ((keymap.moves, "move", False), *items):
         size = len(shown) + len(word) + 3
         if used and used + size > columns:
             lines.append("\n")
@@ -71,11 +71,11 @@ def footer(columns: int) -> Text:
     return lines
 
 
-def help_table() -> Table:
+def help_table(keymap: Keymap = DEFAULT) -> Table:
     """Every key, in two columns of sections."""
     page = Table.grid(padding=(0, 3))
     columns: list[Table] = []
-    for title, keys in SECTIONS:
+    for title, keys in keymap.sections:
         section = Table.grid(padding=(0, 1))
         section.add_row("", Text(title, "bold"))
         for key in keys:

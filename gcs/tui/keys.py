@@ -87,12 +87,3 @@ SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
         ),
     ),
 )
-
-MOVES: Final = "↑↓←→ r f"
-"""The moving keys, as one item of the footer."""
-
-KEYS: Final[tuple[Key, ...]] = tuple(key for _, keys in SECTIONS for key in keys)
-ACTIONS: Final[dict[str, str]] = {name: key.action for key in KEYS for name in key.names}
-
-ABORT: Final = "space"
-"""The one key that acts even under an open help page."""

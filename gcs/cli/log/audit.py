@@ -15,7 +15,7 @@ import click
 
 from gcs.cli.key import read_key_file
 from gcs.cli.options import UTF8
-from gcs.cli.record_files import RECORD, told
+from gcs.cli.record_files import LAST, RECORD, one_record, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -29,7 +29,8 @@ _PROGRESS_FROM_BYTES = 500_000
 
 
 @click.command()
-@click.argument("files", type=RECORD, nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", type=RECORD, nargs=-1, metavar="FILE...")
+@LAST
 @click.option("--show", default=10, show_default=True, help="How many differences are printed.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object a session, one a line.")
 @click.option(
@@ -40,7 +41,12 @@ _PROGRESS_FROM_BYTES = 500_000
 )
 @click.pass_context
 def audit(
-    ctx: click.Context, files: tuple[Path, ...], show: int, as_json: bool, key: str | None
+    ctx: click.Context,
+    files: tuple[Path, ...],
+    show: int,
+    as_json: bool,
+    key: str | None,
+    last: bool,
 ) -> None:
     """Do again what a station did, from its record, and compare.
 
@@ -50,12 +56,13 @@ def audit(
     where anything differs, and where a record has no end, as that of a station that was killed.
     Who knows how can make a record whose parts agree with one another: only --key finds that.
 
-    Examples: gcs log audit logs/20260101-120000_flight.mcap  |  gcs log audit logs/*.mcap --json
+    Examples: gcs log audit --last  |  gcs log audit logs/*.mcap --json
     """
     import msgspec
 
     from gcs.audit.files import sessions
 
+    files = files if files and not last else (one_record(next(iter(files), None), last=last),)
     with told(files[0]):
         found = sessions(files)
     results = []
@@ -155,7 +162,7 @@ def _progress(session: SessionFiles) -> Iterator[Callable[[Path, int], None] | N
 
 
 @click.command(epilog="Example: gcs log sign logs/20260101-120000_flight.mcap --key records.key")
-@click.argument("files", type=RECORD, nargs=-1, required=True, metavar="FILE...")
+@click.argument("files", type=RECORD, nargs=-1, metavar="FILE...")
 @click.option(
     "--key", type=UTF8, required=True, metavar="KEYFILE", help="As `gcs key new` makes it."
 )

@@ -14,16 +14,13 @@ from gcs.cli.log.import_export import cannot_write, export_log, import_log
 from gcs.cli.log.replay import replay
 from gcs.cli.log.report import report
 from gcs.cli.log.rewrite import compact, cut, merge, recover
-from gcs.cli.record_files import RECORD, reading_progress, told
+from gcs.cli.record_files import LAST, RECORD, newest, one_record, reading_progress, told
 from gcs.exit_codes import ExitCode
-from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.record.check import CheckResult
     from gcs.record.info import FlightInfo
     from gcs.record.viewer.layout import Purpose
-
-_LOGS = Path("logs")
 
 
 @click.group()
@@ -85,10 +82,7 @@ def _chosen(files: tuple[Path, ...], *, last: bool) -> tuple[Path, ...]:
         if not files:
             raise click.UsageError("Missing argument 'FILE...'; --last is the newest of logs/")
         return files
-    found = files or tuple(_LOGS.glob("*.mcap"))
-    if not found:
-        raise ExitError(ExitCode.BAD_FILE, f"{_LOGS}/: no record in it", "name one, as FILE")
-    return (max(found, key=lambda file: file.stat().st_mtime_ns),)
+    return (newest(files),)
 
 
 @log.command()
@@ -107,18 +101,20 @@ def _chosen(files: tuple[Path, ...], *, last: bool) -> tuple[Path, ...]:
     show_default=True,
     help="One vehicle, all of them, or the lab's cage.",
 )
-def layout(file: Path | None, output: Path | None, purpose: Purpose) -> None:
+@LAST
+def layout(file: Path | None, output: Path | None, purpose: Purpose, last: bool) -> None:
     """A layout for Foxglove or Lichtblick: camera, grid and map fitted to the flight in FILE.
 
     Without FILE it is for any flight: the camera follows the vehicle.  Open the record, then import
     the layout (Layouts > Import from file).
 
-    Example: gcs log layout logs/20260101-120000_flight.mcap -o flight-layout.json
+    Example: gcs log layout --last -o flight-layout.json
     """
     import json
 
     from gcs.record.viewer.layout import layout_for
 
+    file = one_record(file, last=last) if last else file
     if file is None:
         made = layout_for(None, purpose)
     else:

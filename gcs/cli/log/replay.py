@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gcs.cli.options import SYSID, UTF8, FiniteRange
+from gcs.cli.record_files import LAST, RECORD, one_record
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -31,10 +32,11 @@ KEYS_HELP = "space pause, left/right 5 s, down/up 30 s, + - speed, 0 begin, q en
 
 @click.command(
     "replay",
-    epilog=f"Example: gcs log replay logs/20260101-120000_flight.mcap --speed 2\n\n"
+    epilog=f"Example: gcs log replay --last --speed 2\n\n"
     f"Keys on a terminal: {KEYS_HELP}.\n\nThen QGroundControl, or gcs status, shows the flight.",
 )
-@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("file", type=RECORD, required=False)
+@LAST
 @click.option(
     "--link",
     "links",
@@ -56,7 +58,8 @@ KEYS_HELP = "space pause, left/right 5 s, down/up 30 s, + - speed, 0 begin, q en
 @click.option("--to", "to_s", type=FiniteRange(min=0), metavar="S", help="End S seconds in.")
 @click.option("--vehicle", type=SYSID, metavar="SYSID", help="This vehicle's frames only.")
 def replay(
-    file: Path,
+    file: Path | None,
+    last: bool,
     links: tuple[str, ...],
     speed: float,
     loop: bool,
@@ -72,6 +75,7 @@ def replay(
     from gcs.replay.frames import vehicle_frames
     from gcs.replay.player import Player
 
+    file = one_record(file, last=last)
     with tempfile.TemporaryFile(buffering=1 << 20) as spool:
         frames = vehicle_frames(records_of(file), spool, sysid=vehicle, from_s=from_s, to_s=to_s)
         if not len(frames):

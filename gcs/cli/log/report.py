@@ -8,13 +8,14 @@ from pathlib import Path
 import click
 
 from gcs.cli.options import SYSID
-from gcs.cli.record_files import RECORD, reading_progress, told
+from gcs.cli.record_files import LAST, RECORD, one_record, reading_progress, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 
 @click.command()
-@click.argument("file", type=RECORD)
+@click.argument("file", type=RECORD, required=False)
+@LAST
 @click.option(
     "-o",
     "--output",
@@ -33,19 +34,22 @@ from gcs.operator.errors import ExitError
     is_flag=True,
     help="Print what was found as one JSON object; the page is written only with -o.",
 )
-def report(file: Path, output: Path | None, vehicle: int | None, as_json: bool) -> None:
+def report(
+    file: Path | None, last: bool, output: Path | None, vehicle: int | None, as_json: bool
+) -> None:
     """One page about the flight in FILE: what happened, and what went wrong first.
 
     The page is one HTML file that needs no network: the path inside its fence, plots, states,
     requests with their reasons, and findings with the limits they were judged by.
 
-    Examples: gcs log report logs/SOME.mcap  |  gcs log report logs/SOME.mcap --json
+    Examples: gcs log report --last  |  gcs log report logs/SOME.mcap --json
     """
     from gcs.flight_report.findings_json import report_json
     from gcs.flight_report.render import page
     from gcs.flight_report.scan import scan
     from gcs.flight_report.summary import what_happened, what_is_damaged, what_went_wrong
 
+    file = one_record(file, last=last)
     if output is None and not as_json:
         output = file.with_suffix(".html")
     if output is not None and _same(file, output):

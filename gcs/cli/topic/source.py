@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import click
 
-from gcs.cli.options import DEFAULT_LINK, UTF8, FiniteRange, Seconds
-from gcs.cli.record_files import told
+from gcs.cli.options import UTF8, FiniteRange, Seconds
+from gcs.cli.record_files import newest, told
+from gcs.config import DEFAULT_LINK
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from gcs.shell.stations import Description
     from gcs.topics.topic import Heard, Topic
 
-LOGS = Path("logs")
 LOOK_S = 0.1
 """How often the growing record of a station is looked at."""
 REFRESH_S = 1.0
@@ -83,10 +83,7 @@ class Where:
         """Raises ExitError where there is no last record."""
         if self.log_file is not None:
             return self.log_file
-        found = list(LOGS.glob("*.mcap"))
-        if not found:
-            raise ExitError(ExitCode.BAD_FILE, f"{LOGS}/: no record in it", "name one with --log")
-        return max(found, key=lambda file: file.stat().st_mtime_ns)
+        return newest()
 
     def heard(
         self, seconds: float | None = None, past: Callable[[Heard], None] | None = None
@@ -155,9 +152,11 @@ def for_seconds(heards: Heards, seconds: float | None) -> Heards:
 
 def _live(links: Sequence[str], past: Callable[[Heard], None] | None) -> Heards:
     from gcs.cli.running import station_for
+    from gcs.cli.settings import usual_links
 
-    found = station_for(links or [DEFAULT_LINK], anywhere=not links)
-    return _of_station(found, past) if found is not None else _of_links(links or [DEFAULT_LINK])
+    meant = links or usual_links()
+    found = station_for(meant, anywhere=not links)
+    return _of_station(found, past) if found is not None else _of_links(meant)
 
 
 def _of_station(described: Description, past: Callable[[Heard], None] | None) -> Heards:

@@ -15,6 +15,7 @@ from gcs.operator.client import StationEnded
 from gcs.operator.conversation import Conversation
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.tui.app import FlyApp
+from gcs.tui.keymap import DEFAULT, Keymap, keymap
 from gcs.tui.result import SessionResult, print_result, until_hello
 from tests.shares import one_in
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
@@ -25,12 +26,14 @@ pytestmark = pytest.mark.slow  # the screen's own timers
 Script = Callable[[FlyApp, ListeningStation, Pilot[None]], Awaitable[None]]
 
 
-def flown(script: Script, size: tuple[int, int] = (120, 40)) -> tuple[FlyApp, ListeningStation]:
+def flown(
+    script: Script, size: tuple[int, int] = (120, 40), keys: Keymap = DEFAULT
+) -> tuple[FlyApp, ListeningStation]:
     """Run the station headless through `script`."""
 
     async def run() -> tuple[FlyApp, ListeningStation]:
         station = ListeningStation()
-        app = FlyApp(station)
+        app = FlyApp(station, keymap=keys)
         async with app.run_test(size=size) as pilot:
             await pilot.pause()
             await script(app, station, pilot)
@@ -82,6 +85,16 @@ def test_every_command_key_asks_for_its_word() -> None:
         ]  # fmt: skip
 
     flown(script)
+
+
+def test_keys_that_a_user_has_chosen_do_what_theirs_did_and_are_shown() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        await pilot.press("h", "H", "space", "left_square_bracket")
+        assert station.requests() == ["hold", "abort"]
+        await drawn(app, pilot)
+        assert "[ ABORT" in screen_text(app)
+
+    flown(script, keys=keymap({"hold": ["H"], "abort": ["["], "yaw_left": ["{"]}))
 
 
 def test_in_velocity_mode_a_direction_key_is_flown_while_it_is_held_down() -> None:

@@ -15,7 +15,7 @@ from gcs.tui import fsa_panel, height_panel, look, map_panel, vehicle_panel
 from gcs.tui.braille import Canvas, clip
 from gcs.tui.frame_panels import footer, header
 from gcs.tui.keyboard import PendingGoal
-from gcs.tui.keys import KEYS
+from gcs.tui.keymap import DEFAULT
 from gcs.tui.scene import Scene
 from gcs.tui.view import HALF_SPANS_M, fit, nice_length, outline
 from tests.unit.operator.fake_station import FakeStation
@@ -318,5 +318,5 @@ def test_the_footer_fits_two_lines_of_eighty() -> None:
 
 
 def test_no_key_is_bound_twice() -> None:
-    names = [name for key in KEYS for name in key.names]
+    names = [name for key in DEFAULT.keys for name in key.names]
     assert len(names) == len(set(names))

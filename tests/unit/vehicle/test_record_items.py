@@ -59,13 +59,7 @@ def as_json(item: Any) -> Any:
         ),
         (
             ClientCame(2, "udp 127.0.0.1:14551", False),
-            {
-                "link": 2,
-                "name": "udp 127.0.0.1:14551",
-                "stream": False,
-                "verified": True,
-                "named": False,
-            },
+            {"link": 2, "name": "udp 127.0.0.1:14551", "stream": False, "verified": True},
         ),
         (ClientGone(2, "silent for 10 s"), {"link": 2, "reason": "silent for 10 s"}),
         (ClientFlooded(2, 900), {"link": 2, "dropped": 900}),
