@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import click
 
+from gcs.cli import completers
 from gcs.cli.live_option import LIVE, open_beside
 from gcs.cli.options import LINK, UTF8, VEHICLE, RecordName, Seconds, with_options
 from gcs.cli.settings import configured, configured_keymap
@@ -68,6 +69,7 @@ def usual_timeout_s() -> float:
     default="",
     metavar="FILE",
     help="A mission file: the key i uploads it, then flies it.",
+    shell_complete=completers.missions,
 )
 @click.option(
     "--keep", is_flag=True, help="The link lives on when this operator leaves; see gcs stations."

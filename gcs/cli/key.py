@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli import completers
 from gcs.cli.options import SYSID, TIMEOUT, UTF8, VEHICLE, with_options
 from gcs.config import DEFAULT_LINK
 from gcs.exit_codes import ExitCode
@@ -45,7 +46,7 @@ def key() -> None:
 
 
 @key.command(epilog="Example: gcs key new vehicle.key")
-@click.argument("file", type=UTF8)
+@click.argument("file", type=UTF8, shell_complete=completers.any_file)
 def new(file: str) -> None:
     """Make a key of 32 random bytes, in a new file that only you can read."""
     from gcs.shell.key_files import KeyFileError, new_key
@@ -58,15 +59,21 @@ def new(file: str) -> None:
 
 
 @key.command(epilog="Example: gcs key show vehicle.key")
-@click.argument("file", type=UTF8)
+@click.argument("file", type=UTF8, shell_complete=completers.any_file)
 def show(file: str) -> None:
     """Print the fingerprint of a key, by which keys are compared; never the key."""
     click.echo(f"{file}: fingerprint {read_key_file(file).fingerprint}")
 
 
 @key.command(epilog="Example: gcs key install vehicle.key --link serial:///dev/ttyACM0:115200")
-@click.argument("file", type=UTF8)
-@click.option("--old-key", type=UTF8, metavar="FILE", help="The key that the vehicle has now.")
+@click.argument("file", type=UTF8, shell_complete=completers.any_file)
+@click.option(
+    "--old-key",
+    type=UTF8,
+    metavar="FILE",
+    help="The key that the vehicle has now.",
+    shell_complete=completers.any_file,
+)
 @with_options(*ON_VEHICLE)
 def install(
     file: str,
@@ -91,7 +98,7 @@ def install(
 
 
 @key.command(epilog="Example: gcs key remove vehicle.key --link udpin://127.0.0.1:14550")
-@click.argument("file", type=UTF8)
+@click.argument("file", type=UTF8, shell_complete=completers.any_file)
 @with_options(*ON_VEHICLE)
 def remove(file: str, link: str, vehicle: int | None, timeout: float, sysid: int | None) -> None:
     """Take the key in FILE away from the vehicle, which obeys anybody then.

@@ -11,12 +11,15 @@ import os
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
-from typing import NamedTuple, NoReturn, cast
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, cast
 
 import click
 
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError, error_lines
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT) if hasattr(errno, "EDQUOT") else (errno.ENOSPC,)
 
@@ -74,6 +77,9 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         ),
         "graph": Entry("gcs.cli.graph:graph", "Who sends what to whom, with rates; SVG, DOT."),
         "log": Entry("gcs.cli.log.log:log", "Recorded flights: info, layout, recover, replay."),
+        "completion": Entry(
+            "gcs.cli.completion:completion", "For bash, zsh and fish: words, files, vehicles."
+        ),
         "config": Entry("gcs.cli.config:config", "The file mavgate.toml: show, check, init."),
         "fsa": Entry("gcs.cli.fsa:fsa", "The gate's state machine, printed from its table."),
     },
@@ -102,6 +108,18 @@ class LazyGroup(click.Group):
             if cmd_name in section:
                 return _with_additions(section[cmd_name])
         return None
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Without a look into the commands, which would import them all."""
+        from click.shell_completion import CompletionItem
+
+        entries = {name: entry for section in COMMANDS.values() for name, entry in section.items()}
+        commands = [
+            CompletionItem(name, help=entry.help)
+            for name, entry in entries.items()
+            if name.startswith(incomplete)
+        ]
+        return [*commands, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         for title, section in COMMANDS.items():
@@ -182,7 +200,9 @@ def run(args: Sequence[str] | None = None) -> int:
     except (click.Abort, KeyboardInterrupt):
         click.echo("gcs: interrupted", err=True)
         return ExitCode.INTERRUPTED
-    except (BrokenPipeError, SystemExit):
+    except (BrokenPipeError, SystemExit) as ended:
+        if isinstance(ended, SystemExit) and not ended.code:
+            return ExitCode.DONE  # click has told a shell how a word may go on
         # Whoever read our output has gone; click and rich make a SystemExit of it.
         _drop_output()
         return ExitCode.READER_GONE

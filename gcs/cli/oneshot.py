@@ -7,6 +7,7 @@ from functools import partial
 import click
 
 from gcs import request_words
+from gcs.cli import completers
 from gcs.cli.options import (
     AS_JSON,
     LINK,
@@ -87,6 +88,14 @@ def _command(name: str) -> click.Command:
         click.get_current_context().exit(code)
 
     typed_here = click.Argument(["arguments"], nargs=-1, type=UTF8, metavar=word.usage)
+    if name == "mode":
+        typed_here = click.Argument(
+            ["arguments"],
+            nargs=-1,
+            type=UTF8,
+            metavar=word.usage,
+            shell_complete=completers.modes,
+        )
     options: list[click.Parameter] = [LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT]
     options.append(AS_JSON)
     if name not in request_words.STOPS:

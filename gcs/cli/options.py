@@ -5,16 +5,20 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from click.core import ParameterSource
 
+from gcs.cli import completers
 from gcs.cli.settings import Configured, usual_links
 from gcs.config import DEFAULT_LINK, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from gcs.operator.number_text import read_number, read_whole_number
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -59,6 +63,11 @@ class Seconds(FiniteRange):
 
 class SystemId(click.IntRange):
     """A vehicle's, or a ground station's, MAVLink system id."""
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        return completers.vehicles(ctx, param, incomplete)
 
     def __init__(self) -> None:
         super().__init__(1, 255)
@@ -121,6 +130,7 @@ POLICY = Configured(
     show_default=True,
     metavar="FILE|default|lab|demo",
     help="What the gate allows.",
+    shell_complete=completers.policies,
 )
 LOG_DIR = Configured(
     ["--log-dir"],
@@ -130,6 +140,7 @@ LOG_DIR = Configured(
     show_default=True,
     metavar="DIR",
     help="Where the flight is recorded.",
+    shell_complete=completers.folder,
 )
 TIMEOUT = Configured(
     ["--timeout"],
@@ -159,6 +170,7 @@ SIGN_KEY = click.Option(
     metavar="FILE",
     help="The vehicle's signing key: all that leaves is signed with it, and what comes in unsigned "
     "is refused. See gcs key.",
+    shell_complete=completers.any_file,
 )
 CLIENT_KEY = click.Option(
     ["--client-key"],
@@ -167,6 +179,7 @@ CLIENT_KEY = click.Option(
     metavar="FILE",
     help="The signing key of MAVLink clients: what they send unsigned is refused, and who comes to "
     "a port is sent heartbeats alone until it has signed.",
+    shell_complete=completers.any_file,
 )
 AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
 

@@ -10,14 +10,31 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gcs.cli import completers
 from gcs.cli.settings import usual_log_dir
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from gcs.mcap_file.reader import Progress
 
-RECORD = click.Path(exists=True, dir_okay=False, path_type=Path)
+
+class FileOfKind(click.Path):
+    """A file that exists; a shell is offered those with one of the suffixes."""
+
+    def __init__(self, *suffixes: str) -> None:
+        super().__init__(exists=True, dir_okay=False, path_type=Path)
+        self._complete = completers.files(*suffixes)
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        return self._complete(ctx, param, incomplete)
+
+
+RECORD = FileOfKind(".mcap")
 """The type of an argument that names a record."""
 
 LAST = click.option("--last", is_flag=True, help="The newest record of the log folder.")

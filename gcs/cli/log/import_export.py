@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 import click
 
-from gcs.cli.record_files import reading_progress
+from gcs.cli.record_files import FileOfKind, reading_progress
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from gcs.logfile.exports.track import Track
     from gcs.logfile.imports.result import Imported
 
-SOURCE = click.Path(exists=True, dir_okay=False, path_type=Path)
+SOURCE = FileOfKind(".tlog", ".bin", ".ulg", ".mcap")
 TARGET = click.Path(dir_okay=False, path_type=Path)
 Progress: TypeAlias = Callable[[int], None] | None
 ExportKinds: TypeAlias = (

@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.shell_completion import CompletionItem
 
+from gcs.cli.completers import missions
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from gcs.plan.model import AutopilotName, Geodetic, Plan
 
 AUTOPILOT = click.Option(
@@ -57,10 +59,7 @@ class MissionFile(click.ParamType[str]):
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
-        from gcs.resources import shipped
-
-        names = [name for name in shipped() if name.startswith(incomplete)]
-        return [*map(CompletionItem, names), CompletionItem(incomplete, type="file")]
+        return missions(ctx, param, incomplete)
 
 
 MISSION_FILE = MissionFile()

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import click
 
+from gcs.cli import completers
 from gcs.cli.options import UTF8, FiniteRange, Seconds
 from gcs.cli.record_files import newest, told
 from gcs.config import DEFAULT_LINK
@@ -33,6 +34,7 @@ LOG = click.Option(
     type=click.Path(dir_okay=False, path_type=Path),
     metavar="FILE",
     help="Look into this record instead of listening.",
+    shell_complete=completers.files(".mcap"),
 )
 LAST = click.Option(["--last"], is_flag=True, help="Look into the newest record of logs/.")
 LINK = click.Option(
