@@ -8,7 +8,17 @@ import click
 
 from gcs.cli import completers
 from gcs.cli.live_option import LIVE, open_beside
-from gcs.cli.options import LINK, UTF8, VEHICLE, RecordName, Seconds, with_options
+from gcs.cli.options import (
+    LINK,
+    QUIET,
+    UTF8,
+    VEHICLE,
+    VERBOSE,
+    RecordName,
+    Seconds,
+    log_level,
+    with_options,
+)
 from gcs.cli.settings import configured, configured_keymap
 from gcs.cli.station_options import STATION_OPTIONS, OfStation, new_station
 
@@ -78,8 +88,7 @@ def usual_timeout_s() -> float:
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
-@click.option("--verbose", "-v", is_flag=True, help="--plain: debug lines too.")
-@click.option("--quiet", "-q", is_flag=True, help="--plain: warnings and errors only.")
+@with_options(VERBOSE, QUIET)
 @click.pass_context
 def fly(
     ctx: click.Context,
@@ -116,7 +125,7 @@ def fly(
         raise click.UsageError("--mission is for the keyboard; with --plain type: mission fly FILE")
     mission_path = _mission(mission) if mission else ""
     if plain:
-        level = 1 if verbose else 3 if quiet else 2
+        level = log_level(2, quiet=quiet, verbose=verbose)
         ctx.exit(_fly_plain(config, live, min_level=level, as_json=as_json, strict=strict))
     ctx.exit(_fly_keyboard(config, live, timeout, mission_path, configured_keymap()))
 

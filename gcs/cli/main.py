@@ -86,6 +86,10 @@ COMMANDS: dict[str, dict[str, Entry]] = {
 }
 
 
+OPTIONS = "options"
+"""Of `gcs help options`: no command, but a page."""
+
+
 def _load(target: str) -> object:
     module, attribute = target.split(":")
     return getattr(importlib.import_module(module), attribute)
@@ -97,13 +101,15 @@ class LazyGroup(click.Group):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """`gcs help fly` is `gcs fly --help`."""
         if args[:1] == ["help"]:
-            args = [*args[1:], "--help"]
+            args = [OPTIONS] if args[1:] == [OPTIONS] else [*args[1:], "--help"]
         return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return [name for section in COMMANDS.values() for name in section]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name == OPTIONS:
+            return cast("click.Command", _load("gcs.cli.common_options:options"))
         for section in COMMANDS.values():
             if cmd_name in section:
                 return _with_additions(section[cmd_name])
@@ -130,7 +136,7 @@ class LazyGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         name = args[0]
-        if name not in self.list_commands(ctx) and not name.startswith("-"):
+        if name not in [*self.list_commands(ctx), OPTIONS] and not name.startswith("-"):
             ctx.fail(_unknown(name, self.list_commands(ctx)))
         return super().resolve_command(ctx, args)
 
@@ -168,7 +174,8 @@ def _print_version(ctx: click.Context, _param: click.Parameter, asked: bool) -> 
 @click.group(
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
-    epilog="Example: gcs demo\n\nExit codes: 0 done, 1 a check found something, 2 usage, 3 no "
+    epilog="Example: gcs demo\n\ngcs help options: the options of every command that meets a "
+    "vehicle.\n\nExit codes: 0 done, 1 a check found something, 2 usage, 3 no "
     "link, 4 bad file, 5 refused by the vehicle, 6 refused by the gate, 7 recorder, 8 accepted but "
     "not completed, 9 address in use, 70 bug, 130 interrupted, 141 the reader of a pipe has gone.",
 )

@@ -8,22 +8,18 @@ import click
 
 from gcs import request_words
 from gcs.cli import completers
+from gcs.cli.common_options import COMMON, MeetsVehicle
 from gcs.cli.options import (
-    AS_JSON,
-    LINK,
-    LOG_DIR,
-    POLICY,
-    SIGN_KEY,
     TAKE,
-    TIMEOUT,
     UTF8,
-    VEHICLE,
     Seconds,
     asked_for,
+    log_level,
     station_config,
     typed,
 )
 from gcs.operator import line_parser
+from gcs.operator.warning_filter import WARNING
 
 EXITS = (
     "Exit codes: 0 done, 2 usage, 3 no vehicle, 5 refused by the vehicle, 6 refused by the gate, "
@@ -51,6 +47,8 @@ def _command(name: str) -> click.Command:
         timeout: float,
         wait: float,
         as_json: bool,
+        verbose: bool,
+        quiet: bool,
         take: bool = False,
         arguments: tuple[str, ...] = (),
     ) -> None:
@@ -83,6 +81,8 @@ def _command(name: str) -> click.Command:
             take=take,
             stops=stops,
             wanted=asked_for(),
+            min_level=log_level(WARNING, quiet=quiet, verbose=verbose),
+            quiet=quiet,
         )
         code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
         click.get_current_context().exit(code)
@@ -96,11 +96,10 @@ def _command(name: str) -> click.Command:
             metavar=word.usage,
             shell_complete=completers.modes,
         )
-    options: list[click.Parameter] = [LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT]
-    options.append(AS_JSON)
-    if name not in request_words.STOPS:
-        options.append(TAKE)
-    return click.Command(
+    options: list[click.Parameter] = [WAIT, *COMMON]
+    if name in request_words.STOPS:
+        options.remove(TAKE)
+    return MeetsVehicle(
         name,
         callback=run_word,
         params=[typed_here, *options] if word.arguments else options,
@@ -127,6 +126,8 @@ def _status(
     log_dir: str,
     timeout: float,
     as_json: bool,
+    verbose: bool,
+    quiet: bool,
 ) -> None:
     from gcs.cli import oneshot_session
     from gcs.cli.status import report
@@ -149,15 +150,17 @@ def _status(
         cautions=True,
         anywhere=not typed("links"),
         wanted=asked_for(),
+        min_level=log_level(WARNING, quiet=quiet, verbose=verbose),
+        quiet=quiet,
     )
     code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
     click.get_current_context().exit(code)
 
 
-status = click.Command(
+status = MeetsVehicle(
     "status",
     callback=_status,
-    params=[LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, AS_JSON],
+    params=[each for each in COMMON if each is not TAKE],
     help="What the vehicle reports: state, mode, position, battery, link.",
     epilog=f"Example: gcs status --json\n\n{EXITS}",
 )

@@ -47,7 +47,8 @@ class OneShotConfig:
     Through a running station: `anywhere` says that the only one that runs will do, whatever its
     link is; `take`, to take control over from another operator; `stops`, that nothing is to delay
     it.  `at_once`: do not wait to hear how the vehicle is, the station knows.  `wanted`: what of
-    the station was asked for by name.
+    the station was asked for by name.  `min_level`: of the log lines that are shown.  `quiet`: no
+    progress is shown.
     """
 
     timeout_s: float
@@ -61,6 +62,8 @@ class OneShotConfig:
     at_once: bool = False
     placed: bool = True
     wanted: Wanted = ANY_STATION
+    min_level: int = WARNING
+    quiet: bool = False
     told: bool = True
     """Verdicts and endings are printed; else the task prints what it has to say of them."""
 
@@ -88,7 +91,8 @@ def run_through(found: Description, how: OneShotConfig, task: Task) -> int:
     """Do it through a running station, which goes on."""
     with Interrupts() as interrupts:
         joined: Way = joined_station(found, f"gcs {how.what}", hold_on_leave=False)
-        click.echo(f"gcs: through the running station of process {found.pid}", err=True)
+        if not how.quiet:
+            click.echo(f"gcs: through the running station of process {found.pid}", err=True)
         how = replace(how, at_once=how.stops)
         if found.vehicles and how.wanted.vehicle is not None:
             # Of one of several less is told: not where its home is, nor whether it has landed.
@@ -102,14 +106,15 @@ def run_over(
     """The same with a station that is there already."""
     warnings = WarningFilter(cautions=how.cautions)
     standstill = Standstill()
-    with ProgressDisplay(how.what, connection.now_s()) as display:
+    shown = False if how.quiet else None
+    with ProgressDisplay(how.what, connection.now_s(), shown=shown) as display:
 
         def on_event(event: ipc.Event, request: TrackedRequest | None) -> None:
             display.update(event, connection.now_s())
             if warnings.hides(event, request):
                 return
             seen, shown = dialogue.snapshot, request if how.told else None
-            for line, err in _lines(event, shown, seen, standstill, as_json=how.as_json):
+            for line, err in _lines(event, shown, seen, standstill, how):
                 display.clear()
                 click.echo(line, err=err)
 
@@ -175,12 +180,11 @@ def _lines(
     request: TrackedRequest | None,
     seen: ipc.Snapshot | None,
     standstill: Standstill,
-    *,
-    as_json: bool,
+    how: OneShotConfig,
 ) -> Iterator[tuple[str, bool]]:
     """What to print of an event, and whether it goes to standard error."""
     match event:
-        case ipc.VerdictEvent() | ipc.EndingEvent() if request is not None and as_json:
+        case ipc.VerdictEvent() | ipc.EndingEvent() if request is not None and how.as_json:
             yield msgspec.json.encode(event).decode(), False
         case ipc.VerdictEvent() if request is not None:
             if event.outcome != "accepted":
@@ -190,7 +194,7 @@ def _lines(
         case ipc.Snapshot():
             if stands := standstill.news(event):
                 yield stands, False
-        case ipc.LogEvent() if event.level >= WARNING:
+        case ipc.LogEvent() if event.level >= how.min_level:
             yield event_text.log_line(event), True
         case ipc.Trouble() if not event.exit_code:
             yield "\n".join(event_text.trouble_lines(event)), True

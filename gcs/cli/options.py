@@ -181,6 +181,12 @@ CLIENT_KEY = click.Option(
     "a port is sent heartbeats alone until it has signed.",
     shell_complete=completers.any_file,
 )
+VERBOSE = click.Option(
+    ["-v", "--verbose"], is_flag=True, help="All lines of the log, those for debugging too."
+)
+QUIET = click.Option(
+    ["-q", "--quiet"], is_flag=True, help="One level of the log less than usual, and no progress."
+)
 AS_JSON = click.Option(["--json", "as_json"], is_flag=True, help="Print JSON, for scripts.")
 
 
@@ -196,6 +202,11 @@ def typed(name: str) -> bool:
     where links are, and which policy is usual, but no more than that."""
     source = click.get_current_context().get_parameter_source(name)
     return source in (ParameterSource.COMMANDLINE, ParameterSource.ENVIRONMENT)
+
+
+def log_level(usual: int, *, quiet: bool, verbose: bool) -> int:
+    """From which level of the log on a command shows lines; 1 debug .. 5 fatal."""
+    return 1 if verbose else usual + quiet
 
 
 def with_options(*options: click.Option) -> Callable[[F], F]:

@@ -12,7 +12,7 @@ from gcs.cli.main import COMMANDS
 ROOT = Path(__file__).parents[2]
 PAGES = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("missions/**/*.md")]
 ABOUT_THE_CODE = ("ARCHITECTURE.md", "CONTRIBUTING.md", "decisions.md")
-MADE_BY_A_READER = {"PID.json", "results.json", "layout.json", "lab.json"}
+MADE_BY_A_READER = {"PID.json", "results.json", "layout.json", "lab.json", "mavgate.toml"}
 NOT_OURS = {"grep"}
 
 SOURCES = [

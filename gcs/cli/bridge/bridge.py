@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING, Unpack
 
 import click
 
-from gcs.cli.options import SYSID, UTF8, RecordName, Seconds, with_options
+from gcs.cli.options import (
+    QUIET,
+    SYSID,
+    UTF8,
+    VERBOSE,
+    RecordName,
+    Seconds,
+    log_level,
+    with_options,
+)
 from gcs.cli.station_options import STATION_OPTIONS, OfStation, new_station
 
 if TYPE_CHECKING:
@@ -137,8 +146,7 @@ OWN_COMPID = 191
 )
 @click.option("--plain", is_flag=True, help="Lines on a terminal, too.")
 @click.option("--json", "as_json", is_flag=True, help="Print the events as JSON, a line each.")
-@click.option("--verbose", "-v", is_flag=True, help="Debug lines too.")
-@click.option("--quiet", "-q", is_flag=True, help="Of the log only warnings and errors.")
+@with_options(VERBOSE, QUIET)
 @click.pass_context
 def bridge(
     ctx: click.Context,
@@ -189,7 +197,7 @@ def bridge(
 
         options = LockOptions(sysid, of["policy"], set_fence, enforce_sysid)
         lock_vehicles(vehicles, of["sign_key"], options, target, timeout or 10.0)
-    level = 1 if verbose else 3 if quiet else 2
+    level = log_level(2, quiet=quiet, verbose=verbose)
     ctx.exit(_run(config, timeout, page=not (plain or as_json), as_json=as_json, min_level=level))
 
 

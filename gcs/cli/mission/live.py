@@ -6,25 +6,21 @@ from typing import TypedDict, Unpack
 
 import click
 
+from gcs.cli import completers
+from gcs.cli.common_options import COMMON, MeetsVehicle
 from gcs.cli.mission.files import MISSION_FILE
 from gcs.cli.options import (
-    AS_JSON,
-    LINK,
-    LOG_DIR,
-    POLICY,
-    SIGN_KEY,
-    TAKE,
-    TIMEOUT,
     UTF8,
-    VEHICLE,
     Seconds,
     asked_for,
+    log_level,
     station_config,
     typed,
     with_options,
 )
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
+from gcs.operator.warning_filter import WARNING
 
 EXITS = (
     "Exit codes: 0 done, 3 no vehicle, 4 bad file, 5 refused by the vehicle, 6 refused by the "
@@ -38,7 +34,7 @@ WAIT = click.Option(
     metavar="S",
     help="Seconds to wait for the effect.",
 )
-LINK_OPTIONS = (LINK, VEHICLE, POLICY, SIGN_KEY, LOG_DIR, TIMEOUT, WAIT, AS_JSON, TAKE)
+LINK_OPTIONS = (WAIT, *COMMON)
 
 
 class ToVehicle(TypedDict):
@@ -53,9 +49,13 @@ class ToVehicle(TypedDict):
     wait: float
     as_json: bool
     take: bool
+    verbose: bool
+    quiet: bool
 
 
-@click.command(epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}")
+@click.command(
+    cls=MeetsVehicle, epilog=f"Example: gcs mission upload missions/demo.toml\n\n{EXITS}"
+)
 @click.argument("file", type=MISSION_FILE)
 @with_options(*LINK_OPTIONS)
 def upload(
@@ -66,8 +66,8 @@ def upload(
     _run("mission upload", _readable(file), **to)
 
 
-@click.command(epilog=f"Example: gcs mission download on_board.plan\n\n{EXITS}")
-@click.argument("file", required=False)
+@click.command(cls=MeetsVehicle, epilog=f"Example: gcs mission download on_board.plan\n\n{EXITS}")
+@click.argument("file", required=False, shell_complete=completers.missions)
 @click.option(
     "-o",
     "--output",
@@ -93,7 +93,7 @@ def download(
     _run("mission download", path, **to)
 
 
-@click.command(epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
+@click.command(cls=MeetsVehicle, epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
 @click.argument("file", type=MISSION_FILE)
 @with_options(*LINK_OPTIONS)
 def fly(
@@ -119,7 +119,7 @@ def set_current(
     _run("mission set-current", item, **to)
 
 
-@click.command(epilog=f"Example: gcs mission clear\n\n{EXITS}")
+@click.command(cls=MeetsVehicle, epilog=f"Example: gcs mission clear\n\n{EXITS}")
 @with_options(*LINK_OPTIONS)
 def clear(
     **to: Unpack[ToVehicle],
@@ -187,6 +187,8 @@ def _run(word: str, *arguments: str | int, **to: Unpack[ToVehicle]) -> None:
         take=to["take"],
         anywhere=not typed("links"),
         wanted=asked_for(),
+        min_level=log_level(WARNING, quiet=to["quiet"], verbose=to["verbose"]),
+        quiet=to["quiet"],
     )
     task = oneshot_session.sending(action, to["wait"])
     code = oneshot_session.run(setup, how, task)

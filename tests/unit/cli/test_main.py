@@ -358,5 +358,17 @@ def test_what_is_typed_wrong_is_named(words: str, code: int, told: str) -> None:
     assert told in gcs(*words.split()).output
 
 
+def test_the_common_options_are_told_once_and_named_by_each_command() -> None:
+    page = gcs("help", "options").output
+    for words in ("goto", "status", "mission upload"):
+        told = gcs(*words.split(), "--help").output
+        assert "(gcs help options):\n  --link --vehicle --policy" in told
+        assert "Where the vehicle is" not in told
+    assert {"--link", "--vehicle", "--policy", "--take", "--quiet"} <= set(told.split())
+    assert "Where the vehicle is" in page
+    assert "[default: udpin://127.0.0.1:14550]" in page
+    assert "options" not in main.gcs.list_commands(click.Context(main.gcs))
+
+
 def test_the_library_is_seen_by_whoever_asks_what_there_is() -> None:
     assert set(gcs_library.__all__) <= set(dir(gcs_library))

@@ -93,6 +93,16 @@ def test_what_takes_too_long_is_eight(capsys: pytest.CaptureFixture[str]) -> Non
     assert connection.station.state == "HOLDING"
 
 
+def test_how_much_of_the_log_is_shown_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
+    shown = []
+    for level in (1, 3, 4):
+        how = OneShotConfig(10.0, 60.0, as_json=False, what="goto", min_level=level)
+        task = sending(SendRequests((ipc.Ask(0, "goto", goal_enu=(500.0, 0.0, 2.0)),)), 60.0)
+        run_over(FakeConnection(FakeStation("airborne")), NoInterrupts(), how, task)
+        shown.append(capsys.readouterr().err.count("gate:"))
+    assert shown[0] > shown[1] >= shown[2] == 0
+
+
 def test_no_vehicle_is_three() -> None:
     with pytest.raises(ExitError) as failed:
         run("land", FakeStation("silent"))
