@@ -9,8 +9,8 @@ not decode is answered with a `Trouble` event.  What the record keeps too is a s
 `gcs/report.py`, or is made of one.
 
 Answers (`VerdictEvent`, `StreamVerdictEvent`, `OrbitEvent`, `EndingEvent`, `ProgressEvent`,
-`ParametersEvent`, `FileDataEvent`, `FilesEvent`, `OperationList`, `MessageEvent`, `Topic`,
-`TopicMessage`) go to the operator who asked; all else goes to all.
+`ParametersEvent`, `FileDataEvent`, `FilesEvent`, `LogsEvent`, `OperationList`, `MessageEvent`,
+`Topic`, `TopicMessage`) go to the operator who asked; all else goes to all.
 `docs/json.md` is this module as a page; `SCHEMA` counts up when a field or a meaning that is there
 changes, not when something is added.
 
@@ -55,8 +55,8 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
 
     `word` is one of: control arm disarm takeoff goto orbit land rtl hold abort resume photo mode
     fence mission_start mission_upload mission_download mission_clear mission_set_current
-    mission_check param_list param_get param_set file_read file_list stream_begin stream_end
-    station_take station_release station_end.
+    mission_check param_list param_get param_set file_read file_list file_crc log_list log_read
+    stream_begin stream_end station_take station_release station_end.
     Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
     for every one that flies, and the first of them answers.
     """
@@ -70,11 +70,12 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     force: bool = False  # disarm
     on: bool = True  # fence
     path: str = ""  # mission_upload: file to read; mission_download: where to write;
-    #   file_read, file_list: on the vehicle
-    item: int = 0  # mission_set_current: where the next start begins, as MAVLink counts (seq)
+    #   file_read, file_list, file_crc: on the vehicle
+    item: int = 0  # mission_set_current: where the next start begins, as MAVLink counts (seq);
+    #   log_read: the vehicle's number of the log
     name: str = ""  # param_get, param_set: of the parameter
     value: float | None = None  # param_set
-    offset: int = 0  # file_read: the first byte that is wanted
+    offset: int = 0  # file_read, log_read: the first byte that is wanted
     operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
     vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
     orbit: Circle | None = None  # orbit
@@ -353,7 +354,7 @@ class ParametersEvent(msgspec.Struct, frozen=True, tag="parameters", tag_field="
 
 
 class FileDataEvent(msgspec.Struct, frozen=True, tag="file_data", tag_field="type"):
-    """The next bytes of what file_read reads, in order."""
+    """The next bytes of what file_read or log_read reads, in order."""
 
     id: int
     offset: int
@@ -365,14 +366,30 @@ class FileInfo(msgspec.Struct, frozen=True):
     """What a folder on the vehicle holds."""
 
     name: str
-    size: int | None  # bytes; null = a folder
+    size: int | None  # bytes; null = a folder, or not told
+    crc: int | None = None  # CRC-32 of the content, as MAVLink FTP has it; of file_crc only
 
 
 class FilesEvent(msgspec.Struct, frozen=True, tag="files", tag_field="type"):
-    """What file_list has found (at most 50 an event)."""
+    """What file_list has found (at most 50 an event), or file_crc."""
 
     id: int
     files: list[FileInfo]
+
+
+class LogInfo(msgspec.Struct, frozen=True):
+    """A flight log that the vehicle keeps."""
+
+    number: int
+    size: int  # bytes
+    time_utc_s: int  # when it was begun, seconds since 1970; 0 = not known
+
+
+class LogsEvent(msgspec.Struct, frozen=True, tag="logs", tag_field="type"):
+    """What log_list has found (at most 50 an event)."""
+
+    id: int
+    logs: list[LogInfo]
 
 
 class ProgressEvent(msgspec.Struct, frozen=True, tag="progress", tag_field="type"):
@@ -541,6 +558,7 @@ Event: TypeAlias = (
     | ParametersEvent
     | FileDataEvent
     | FilesEvent
+    | LogsEvent
     | MessageEvent
     | Topic
     | TopicMessage

@@ -371,6 +371,9 @@ TABLE: Final[tuple[Word, ...]] = (
     Word("param list", doer=Doer.READER, anyone=True),
     Word("file read", doer=Doer.READER, anyone=True),
     Word("file list", doer=Doer.READER, anyone=True),
+    Word("file crc", doer=Doer.READER, anyone=True),
+    Word("log list", doer=Doer.READER, anyone=True),
+    Word("log read", doer=Doer.READER, anyone=True),
     Word("stream begin", gate=gate.BeginStream()),
     Word("stream end", gate=gate.EndStream()),
     Word("station release", doer=Doer.STATION, anyone=True),
@@ -402,7 +405,7 @@ WORD_BY_NAME: dict[str, Word] = {word.name: word for word in WORDS}
 def label(request: Ask) -> str:
     """A request as an operator would type it: the table read backwards."""
     name = request.word
-    for first in ("mission", "param", "file", "station", "stream"):
+    for first in ("mission", "param", "file", "log", "station", "stream"):
         name = name.replace(f"{first}_", f"{first} ")
     parts: list[str] = [name]
     if request.word == "takeoff":

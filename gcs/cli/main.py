@@ -71,6 +71,9 @@ COMMANDS: dict[str, dict[str, Entry]] = {
             "gcs.cli.param.param:param",
             "Parameters of the vehicle: list, get, set, show, save, load, diff.",
         ),
+        "vehicle-log": Entry(
+            "gcs.cli.vehicle_log:vehicle_log", "Flight logs that the vehicle keeps: list, get."
+        ),
         "key": Entry("gcs.cli.key:key", "Signing keys: new, show, install on a vehicle, remove."),
         "topic": Entry(
             "gcs.cli.topic.topic:topic", "Messages live or recorded: list, echo, hz, plot."

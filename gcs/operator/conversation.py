@@ -7,6 +7,7 @@ Whoever talks with a station keeps one of these: typed lines, one-shot commands 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import msgspec
 
@@ -30,6 +31,10 @@ _EXIT_CODE_OF_REFUSAL: dict[str, ExitCode] = {
 }
 
 
+Found: TypeAlias = ipc.ParametersEvent | ipc.FileDataEvent | ipc.FilesEvent | ipc.LogsEvent
+"""What is read of a vehicle for a request."""
+
+
 @dataclass(slots=True)
 class TrackedRequest:
     """One request that was sent, and what the station has answered so far."""
@@ -38,9 +43,7 @@ class TrackedRequest:
     label: str
     verdict: ipc.VerdictEvent | None = None
     outcome: ipc.EndingEvent | None = None
-    found: list[ipc.ParametersEvent | ipc.FileDataEvent | ipc.FilesEvent] = field(
-        default_factory=list
-    )
+    found: list[Found] = field(default_factory=list)
     """What was read for it; whoever works on it as it comes may empty the list."""
 
     @property
@@ -121,7 +124,7 @@ class Conversation:
         match event:
             case ipc.VerdictEvent() | ipc.EndingEvent() | ipc.ProgressEvent():
                 return self._answered(event)
-            case ipc.ParametersEvent() | ipc.FileDataEvent() | ipc.FilesEvent():
+            case ipc.ParametersEvent() | ipc.FileDataEvent() | ipc.FilesEvent() | ipc.LogsEvent():
                 tracked = self._open.get(event.id)
                 if tracked is not None:
                     tracked.found.append(event)

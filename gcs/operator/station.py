@@ -24,7 +24,7 @@ import msgspec
 from gcs import ipc
 from gcs.frames import Vec3
 from gcs.operator.client import Listened, StationEnded, StationEvent
-from gcs.operator.conversation import Conversation, TrackedRequest
+from gcs.operator.conversation import Conversation, Found, TrackedRequest
 from gcs.operator.failures import Disconnected, NotCompleted, Refused
 from gcs.operator.stream import Stream, number
 
@@ -53,7 +53,7 @@ class Operation:
         return "running" if self._tracked.outcome is None else self._tracked.outcome.ended
 
     @property
-    def found(self) -> list[ipc.ParametersEvent | ipc.FileDataEvent | ipc.FilesEvent]:
+    def found(self) -> list[Found]:
         """What was read for it."""
         return self._tracked.found
 

@@ -38,6 +38,11 @@ class Pieces:
             found.append(self.add(first, self._ahead.pop(first)))
         return b"".join(found)
 
+    @property
+    def gap(self) -> tuple[int, int] | None:
+        """The first range that is missing before `end`; None where nothing is."""
+        return (self.at, min(self._ahead)) if self._ahead else None
+
     def missing(self, most: int) -> list[int]:
         """Offsets of the first `most` pieces before `end` that did not come."""
         found: list[int] = []

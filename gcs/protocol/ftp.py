@@ -29,6 +29,9 @@ WAITS: Final = 12
 asked for at a time, one in 200,000 comes to that."""
 OPEN_WAITS: Final = 4
 """The same of the first question: a vehicle without FTP does not answer at all."""
+CRC_WAITS: Final = 60
+"""So many such waits a vehicle has for the check sum of a file; it is asked again each few."""
+CRC_AGAIN_WAITS: Final = 6
 AT_ONCE: Final = 4
 """Missing pieces that are asked for together; ArduPilot queues five requests."""
 APART: Final = 251
@@ -73,7 +76,14 @@ class FolderListed:
     entries: tuple[FileEntry, ...]
 
 
-FtpEffect: TypeAlias = Send | FileData | FileEnd | FileFailed | FolderListed
+@dataclass(frozen=True, slots=True)
+class FileCrcTold:
+    """CRC-32 of a whole file, of the polynomial 0xEDB88320 from zero, not inverted."""
+
+    crc: int
+
+
+FtpEffect: TypeAlias = Send | FileData | FileEnd | FileFailed | FolderListed | FileCrcTold
 
 
 @dataclass(frozen=True, slots=True)
@@ -369,6 +379,49 @@ class FolderRead:
             self._entries.append(FileEntry(name, None))
         elif line[:1] == "F":
             self._entries.append(FileEntry(name, int(size) if size.isdecimal() else 0))
+
+
+class FileCrc:
+    """Asks for the check sum of a file, which the vehicle reads whole for it."""
+
+    def __init__(
+        self, own: Address, target: Address, path: str, answer_ns: int = ANSWER_NS
+    ) -> None:
+        self._client = _Client(own, target, answer_ns)
+        self._path = path.encode()
+        self._began_ns = 0
+        self.deadline_ns: int | None = None
+        self.done = False
+
+    def start(self, now_ns: int) -> list[FtpEffect]:
+        self._client.begin(now_ns)
+        self._began_ns = now_ns
+        return self._ask(now_ns)
+
+    def stop(self) -> list[FtpEffect]:
+        """It is not wanted any more."""
+        self.done, self.deadline_ns = True, None
+        return []
+
+    def handle(self, event: Heard | Wake, now_ns: int) -> list[FtpEffect]:
+        if self.done:
+            return []
+        if isinstance(event, Wake):
+            if self.deadline_ns is None or now_ns < self.deadline_ns:
+                return []
+            if now_ns - self._began_ns >= CRC_WAITS * self._client.answer_ns:
+                return [*self.stop(), FileFailed(None, "the vehicle tells no check sum")]
+            return self._ask(now_ns, again=True)
+        reply = self._client.reply(event)
+        if reply is None or reply.asked != FtpOpcode.CALCFILECRC:
+            return []
+        if reply.opcode == FtpOpcode.NAK:
+            return [*self.stop(), FileFailed(reply.error, error_words(reply.error))]
+        return [*self.stop(), FileCrcTold(int.from_bytes(reply.data[:4], "little"))]
+
+    def _ask(self, now_ns: int, *, again: bool = False) -> list[FtpEffect]:
+        self.deadline_ns = now_ns + CRC_AGAIN_WAITS * self._client.answer_ns
+        return [self._client.send(FtpOpcode.CALCFILECRC, data=self._path, again=again)]
 
 
 def error_words(error: int) -> str:

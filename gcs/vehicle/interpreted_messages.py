@@ -16,7 +16,7 @@ from gcs.wire.ids import Component, MavAutopilot, MavType
 
 CAMERA_MESSAGES: Final = frozenset({m.CameraImageCaptured, m.CameraFeedback})
 PARAMETER_MESSAGES: Final = frozenset({m.ParamValue, m.ParamError})
-FILE_MESSAGES: Final = frozenset({m.FileTransferProtocol})
+FILE_MESSAGES: Final = frozenset({m.FileTransferProtocol, m.LogEntry, m.LogData})
 MISSION_MESSAGES: Final = frozenset(
     {m.MissionCurrent, m.MissionItemReached, *get_args(PlanMessage)}
 )

@@ -580,6 +580,27 @@ class Timesync(Message, frozen=True, gc=False):
     target_component: int = 0
 
 
+class LogRequestList(Message, frozen=True, gc=False):
+    """LOG_REQUEST_LIST (117): 6 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.LOG_REQUEST_LIST
+    start: int
+    end: int
+    target_system: int
+    target_component: int
+
+
+class LogEntry(Message, frozen=True, gc=False):
+    """LOG_ENTRY (118): 14 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.LOG_ENTRY
+    time_utc: int  # s
+    size: int  # bytes
+    id: int
+    num_logs: int
+    last_log_num: int
+
+
 class LogRequestData(Message, frozen=True, gc=False):
     """LOG_REQUEST_DATA (119): 12 bytes."""
 
@@ -589,6 +610,16 @@ class LogRequestData(Message, frozen=True, gc=False):
     id: int
     target_system: int
     target_component: int
+
+
+class LogData(Message, frozen=True, gc=False):
+    """LOG_DATA (120): 97 bytes."""
+
+    MSG_ID: ClassVar[MsgId] = MsgId.LOG_DATA
+    ofs: int
+    id: int
+    count: int  # bytes
+    data: tuple[int, ...]  # 90 values
 
 
 class LogRequestEnd(Message, frozen=True, gc=False):

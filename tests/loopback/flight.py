@@ -281,6 +281,7 @@ class Flight(Looks):
         name: str = "",
         value: float | None = None,
         offset: int = 0,
+        item: int = 0,
     ) -> int:
         """One request; its number."""
         self.last_id = ask_id = self.last_id + 1
@@ -300,6 +301,7 @@ class Flight(Looks):
             name=name,
             value=value,
             offset=offset,
+            item=item,
         )
         self.feed(inputs.OperatorLine(1, ask))
         return ask_id

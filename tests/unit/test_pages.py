@@ -57,7 +57,7 @@ def missing(page: Path) -> list[str]:
 
 def is_no_command(line: str) -> bool:
     """`gcs WORD ...` or `make WORD`, as a line of its own or as a piece of code."""
-    found = re.match(r"(gcs|make) ([a-z]+)\b", line)
+    found = re.match(r"(gcs|make) ([a-z][a-z-]*)\b", line)
     return found is not None and found[2] not in {"gcs": GCS_WORDS, "make": TARGETS}[found[1]]
 
 

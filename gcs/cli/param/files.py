@@ -61,7 +61,9 @@ def save(file: str, form: str | None, force: bool, **to: Unpack[ToVehicle]) -> N
             path.write_text(write(chosen, entries.values(), talk.sysid), encoding="utf-8")
         except OSError as error:
             raise ExitError(ExitCode.BAD_FILE, f"{file}: {error.strerror}") from None
-        talk.say(f"{len(entries)} parameters are in {file} ({chosen})")
+        said = {"path": file, "format": chosen, "parameters": len(entries)}
+        text = f"{len(entries)} parameters are in {file} ({chosen})"
+        talk.say(msgspec.json.encode(said).decode() if to["as_json"] else text)
         return ExitCode.DONE
 
     click.get_current_context().exit(with_vehicle("param save", to, task))
@@ -94,7 +96,11 @@ def load(file: str, yes: bool, dry_run: bool, **to: Unpack[ToVehicle]) -> None:
         context.exit(code)
     here = [each for each in shown if each.a is not None]
     absent = [each for each in shown if each.a is None]
-    click.echo("\n".join(_lines(here)) if here else f"nothing differs from {file}")
+    as_json = to["as_json"]
+    if as_json and (dry_run or not here):
+        click.echo(_json(here))
+    if not as_json:
+        click.echo("\n".join(_lines(here)) if here else f"nothing differs from {file}")
     if absent:
         names = ", ".join(each.name for each in absent)
         click.echo(f"not on the vehicle (now): {names}", err=True)
@@ -104,17 +110,24 @@ def load(file: str, yes: bool, dry_run: bool, **to: Unpack[ToVehicle]) -> None:
         if not sys.stdin.isatty():
             raise ExitError(ExitCode.USAGE, "nobody can be asked here", "--yes sends them")
         click.confirm(f"set these {len(here)} parameters?", abort=True)
-    code = with_vehicle("param load", to, lambda talk: _load(talk, wanted, here), record=True)
+
+    def task(talk: Talk) -> ExitCode:
+        return _load(talk, wanted, here, as_json=as_json)
+
+    code = with_vehicle("param load", to, task, record=True)
     context.exit(code)
 
 
-def _load(talk: Talk, wanted: dict[str, Entry], first: list[Difference]) -> ExitCode:
+def _load(
+    talk: Talk, wanted: dict[str, Entry], first: list[Difference], *, as_json: bool
+) -> ExitCode:
     """Pass by pass, until nothing new has appeared."""
     from gcs import ipc
     from gcs.cli.param.talk import failure
 
     tried: set[str] = set()
     failed: list[ExitCode] = []
+    rows: list[dict[str, object]] = []
     sending = first
     for _ in range(PASSES):
         for each in sending:
@@ -122,17 +135,19 @@ def _load(talk: Talk, wanted: dict[str, Entry], first: list[Difference]) -> Exit
             assert each.b is not None
             ask = ipc.Ask(0, "param_set", name=each.name, value=float(each.b.value))
             tracked = talk.ask(ask)
-            if not tracked.completed:
+            why = "" if tracked.completed else failure(tracked)
+            rows.append({"name": each.name, "value": ask.value, "set": not why, "why": why})
+            if why:
                 failed.append(tracked.exit_code)
-                talk.say(failure(tracked), err=True)
+                talk.say(why, err=True)
         present = talk.parameters()
         left = [each for each in _to_send(present, wanted) if each.name not in tried]
         sending = [each for each in left if each.a is not None]
         if not sending:
             break
-        talk.say(f"{len(sending)} more have appeared")
-    done = len(tried) - len(failed)
-    talk.say(f"{done} of {len(tried)} parameters are set")
+        talk.say(f"{len(sending)} more have appeared", err=as_json)
+    done = f"{len(tried) - len(failed)} of {len(tried)} parameters are set"
+    talk.say(msgspec.json.encode(rows).decode() if as_json else done)
     for each in left:
         talk.say(f"{each.name}: the vehicle does not have it", err=True)
     return failed[0] if failed else ExitCode.DIFFERENT if left else ExitCode.DONE
@@ -194,6 +209,11 @@ def _lines(found: list[Difference]) -> list[str]:
         f"{each.name:<16} {each.a.text if each.a else '-':>14} {each.b.text if each.b else '-':>14}"
         for each in found
     ]
+
+
+def _json(found: list[Difference]) -> str:
+    rows = [{"name": each.name, "a": _value(each.a), "b": _value(each.b)} for each in found]
+    return msgspec.json.encode(rows).decode()
 
 
 def _value(entry: Entry | None) -> int | float | None:

@@ -62,11 +62,29 @@ class Talk:
         """All of the vehicle's.  Raises NotDone."""
         return entries_of(self.done(ipc.Ask(0, "param_list")))
 
+    def pour(self, request: ipc.Ask, into: Callable[[ipc.FileDataEvent], None]) -> TrackedRequest:
+        """Send it, hand on the bytes as they come, and wait for its end."""
+        tracked = self.dialogue.send(request)
+        while True:
+            self.dialogue.wait_until(lambda: bool(tracked.found) or tracked.settled, self._wait_s)
+            found, tracked.found[:] = list(tracked.found), []
+            for each in found:
+                if isinstance(each, ipc.FileDataEvent):
+                    into(each)
+            if not found:
+                return tracked
+
     def file(self, path: str) -> bytes | None:
         """One of the vehicle's files; None where it has none of that name."""
         tracked = self.ask(ipc.Ask(0, "file_read", path=path))
         parts = [each.data for each in tracked.found if isinstance(each, ipc.FileDataEvent)]
         return b"".join(parts) if tracked.completed else None
+
+    def folder(self, path: str) -> list[ipc.FileInfo]:
+        """What one of the vehicle's folders holds; nothing where there is none of that name."""
+        tracked = self.ask(ipc.Ask(0, "file_list", path=path))
+        events = [each for each in tracked.found if isinstance(each, ipc.FilesEvent)]
+        return [each for event in events for each in event.files]
 
     def say(self, line: str, *, err: bool = False) -> None:
         self._display.clear()

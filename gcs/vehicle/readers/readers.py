@@ -12,7 +12,7 @@ from gcs.protocol.parameter_list import parameter_of
 from gcs.protocol.parameters import Parameter
 from gcs.session.speedup_waits import Times
 from gcs.session.work import AskReader, Work
-from gcs.vehicle.readers.files import ListVehicleFolder, ReadVehicleFile
+from gcs.vehicle.readers.files import FileJob, ListFolder, ListLogs, ReadLog, SumUpFile
 from gcs.vehicle.readers.job import Asked, Job, refused
 from gcs.vehicle.readers.parameters import GetParameter, ListParameters, SetParameter
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -66,9 +66,15 @@ class Readers:
             case "param_set":
                 return SetParameter(asked, self._known)
             case "file_read":
-                return ReadVehicleFile(asked)
+                return FileJob(asked)
             case "file_list":
-                return ListVehicleFolder(asked)
+                return ListFolder(asked)
+            case "file_crc":
+                return SumUpFile(asked)
+            case "log_list":
+                return ListLogs(asked)
+            case "log_read":
+                return ReadLog(asked)
         raise AssertionError(f"{asked.ask.word} is for another part")
 
     def heard(self, heard: Heard, telemetry: Telemetry, now_ns: int) -> list[Work]:

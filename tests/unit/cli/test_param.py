@@ -131,6 +131,9 @@ def test_only_what_differs_is_loaded_and_what_appears_then(
     assert sets == ["param_set BRAKE_ENABLE", "param_set BRAKE_GAIN"]
     assert station.values["BRAKE_GAIN"] == 2.5
     assert station.values["STAT_BOOT"] == 3
+    station.values["RTL_TYPE"] = 5
+    rows = json.loads(gcs("param", "load", file, "--yes", "--json").output)
+    assert rows == [{"name": "RTL_TYPE", "value": 1.0, "set": True, "why": ""}]
     assert gcs("param", "load", file, "--yes").output == f"nothing differs from {file}\n"
 
 
