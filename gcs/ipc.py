@@ -178,6 +178,7 @@ class Hello(msgspec.Struct, frozen=True, tag="hello", tag_field="type"):
     schema: int = SCHEMA
     client: int = 1  # the number that the station knows this operator by; 1 has started it
     client_ports: list[str] = []  # where MAVLink clients reach the vehicle through the station
+    battery_low_pct: float = 0.0  # from where on the policy calls a battery low
 
 
 class OperatorInfo(msgspec.Struct, frozen=True):

@@ -7,6 +7,7 @@ from rich.text import Text
 
 from gcs.operator.control_text import operator_words
 from gcs.tui import look
+from gcs.tui.command_line import CommandLine
 from gcs.tui.keymap import DEFAULT, Keymap
 from gcs.tui.scene import Scene
 
@@ -40,6 +41,39 @@ def header(scene: Scene, columns: int) -> Text:
         right.append("NOT RECORDED ", look.BAD)
     gap = columns - left.cell_len - right.cell_len
     return Text.assemble(left, " " * max(1, gap), right, end="", no_wrap=True)
+
+
+def alarms(scene: Scene, columns: int) -> Text:
+    """One line, there while anything is not acknowledged."""
+    words = scene.alarms.words()
+    standing = any(each.standing for each in scene.alarms.open)
+    ends = "  n: noted "
+    if len(words) + len(ends) + 3 > columns:
+        words = words[: columns - len(ends) - 5] + " …"
+    line = f" ▲ {words}".ljust(columns - len(ends)) + ends
+    return Text(line, look.ALARM if standing else look.ALARM_OVER, no_wrap=True, end="")
+
+
+def typing(line: CommandLine, columns: int) -> Text:
+    """In place of the keys while a line is typed: what it may become, and the way out."""
+    out = Text(" Esc leaves, Enter sends ", look.PLAIN, no_wrap=True, end="", overflow="ellipsis")
+    if line.prompt == "/":
+        out = Text(" Esc shows all again, Enter keeps what was found ", look.PLAIN, end="")
+    out.append(" Esc Esc or Ctrl-Space ABORT", look.BAD)
+    offers = line.hint() or ("Tab completes, ↑ ↓ earlier lines" if line.prompt == ":" else "")
+    return Text.assemble((f" {offers}"[:columns], look.PENDING), "\n", out)
+
+
+def question() -> Text:
+    """Before the operator of a vehicle in the air leaves it."""
+    return Text.assemble(
+        ("The vehicle is in the air.\n\n", "bold"),
+        "Leave it?  It is told to hold, and nobody flies it then.\n\n",
+        ("q or y", look.PENDING), " leaves    ",
+        ("any other key", look.PENDING), " stays    ",
+        ("Space", look.BAD), " ABORT",
+        justify="center",
+    )  # fmt: skip
 
 
 def _operator(scene: Scene, columns: int) -> str:

@@ -33,11 +33,16 @@ class VelocityKeys:
 
     v_enu: Vec3 = STILL
     until_s: float = 0.0
+    typed: bool = False  # by a line, with its end: the stream ends with it
 
     def pressed(self, direction: str, speed_m_s: float, now_s: float) -> VelocityKeys:
         east, north, up = DIRECTIONS[direction]
         v_enu = (east * speed_m_s, north * speed_m_s, up * speed_m_s)
         return VelocityKeys(v_enu, now_s + KEY_COUNTS_S)
+
+    def over(self, now_s: float) -> bool:
+        """A typed velocity has been flown for its time."""
+        return self.typed and now_s >= self.until_s
 
     def flown(self, now_s: float) -> Vec3:
         return self.v_enu if now_s < self.until_s else STILL
@@ -50,6 +55,11 @@ class PendingGoal:
     goal_enu: Vec3 = START_ENU
     yaw_deg: float | None = None
     step_m: float = 1.0
+
+    @property
+    def goal(self) -> tuple[Vec3, float | None]:
+        """What is sent of it."""
+        return self.goal_enu, self.yaw_deg
 
     def moved(self, direction: str) -> PendingGoal:
         """One step on; rounded to the millimetre, so that ten steps of 0.1 m make 1 m."""

@@ -25,6 +25,12 @@ class Key:
     loud: bool = False
 
 
+ABORT: Final = "request('abort')"
+ABORT_IN_A_LINE: Final = "ctrl+@"
+"""Ctrl-Space, as Textual calls it."""
+ALWAYS: Final = {ABORT_IN_A_LINE: ABORT, "ctrl+c": "leave"}
+"""Keys that act even while a line is typed, whatever keys a user has chosen."""
+
 SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
     (
         "Pending goal",
@@ -49,8 +55,8 @@ SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
             Key(
                 ("space", "escape"),
                 "Space",
-                "request('abort')",
-                "abort: stop now (Esc too)",
+                ABORT,
+                "abort: stop now (Esc too; in a line Esc Esc or Ctrl-Space)",
                 "ABORT",
                 loud=True,
             ),
@@ -67,8 +73,8 @@ SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
                 "take off",
             ),
             Key(("l",), "l", "request('land')", "land where it is", "land"),
-            Key(("b",), "b", "request('rtl')", "back home and land", "back home"),
-            Key(("p",), "p", "request('photo')", "take a picture", "picture"),
+            Key(("b",), "b", "request('rtl')", "back home and land", "home"),
+            Key(("p",), "p", "request('photo')", "take a picture"),
             Key(("i",), "i", "fly_mission", "fly the mission on board, or of --mission", "mission"),
             Key(("y",), "y", "velocity", "velocity mode: arrows fly the step in m/s; again: over"),
             Key(("k",), "k", "switch_fence", "fence off and on (lab policy only)"),
@@ -77,13 +83,22 @@ SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
     (
         "Station",
         (
+            Key(("colon",), ":", "words", "a line with any word; Tab, ↑, Esc", "words"),
+            Key(("n",), "n", "acknowledge", "acknowledge the alarms"),
             Key(("o",), "o", "request('station_take')", "take over from another operator"),
             Key(("plus", "equals_sign"), "+", "zoom(-1)", "map: closer"),
             Key(("minus",), "-", "zoom(1)", "map: farther"),
             Key(("z",), "z", "fit", "map: fit by itself"),
+            Key(("slash",), "/", "search", "search the log; Esc ends it"),
             Key(("g",), "g", "log_level", "log: info, warnings only, or debug too"),
             Key(("question_mark", "f1"), "?", "help", "this help", "help"),
-            Key(("q", "ctrl+c", "ctrl+q"), "q", "leave", "quit: the vehicle holds first", "quit"),
+            Key(
+                ("q", "ctrl+c", "ctrl+q"),
+                "q",
+                "leave",
+                "quit: the vehicle holds first; in the air: q q",
+                "quit",
+            ),
         ),
     ),
 )

@@ -46,6 +46,7 @@ class LogPanel(RichLog):
         self._folded = 0
         self._last: tuple[str, str, int] = ("", "", INFO)
         self._columns = 0
+        self._sought = ""
 
     def tell(self, text: str, style: str, level: int = INFO, time_ns: int | None = None) -> None:
         """`time_ns` of the wall clock; None is now."""
@@ -75,6 +76,12 @@ class LogPanel(RichLog):
         self._write_again()
         return LEVEL_NAMES[self.level]
 
+    def search(self, text: str) -> None:
+        """Show only lines with this in them, in any case of letters; empty shows all again."""
+        if text.lower() != self._sought:
+            self._sought = text.lower()
+            self._write_again()
+
     def on_resize(self, event: Resize) -> None:
         """Wrapped to the new width, and at its end if it was there."""
         if self._columns not in (0, event.size.width):
@@ -87,8 +94,14 @@ class LogPanel(RichLog):
         self._show(entry)
 
     def _show(self, entry: Entry) -> None:
-        if entry.level >= self.level:
-            self.write(entry.line, expand=True)
+        if self._sought and self._sought not in entry.line.plain.lower():
+            return
+        if entry.level >= self.level or self._sought:
+            line = entry.line
+            if self._sought:
+                line = line.copy()
+                line.highlight_words([self._sought], look.FOUND, case_sensitive=False)
+            self.write(line, expand=True)
 
     def _write_again(self) -> None:
         self.clear()

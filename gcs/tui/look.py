@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from gcs.tui.verdict_ahead import Ahead
+
 VEHICLE: Final = "bold bright_white"
 PENDING: Final = "bold #ffd75f"
 ACTIVE: Final = "bold #5fd7ff"
@@ -35,4 +37,14 @@ ANSWER: Final[dict[str, str]] = {
     "timed out": BAD,
     "taken over": WARN,
 }
+FOUND: Final = "reverse"
+ALARM: Final = "bold #16161e on #ff5f5f"
+ALARM_OVER: Final = "#16161e on #ffaf5f"
 LEVEL: Final[tuple[str, ...]] = ("", DIM, PLAIN, WARN, BAD, "bold reverse #ff5f5f")
+AHEAD: Final[dict[Ahead, str]] = {
+    Ahead.UNKNOWN: PENDING,
+    Ahead.FREE: f"bold {GOOD}",
+    Ahead.LATER: f"bold {WARN}",
+    Ahead.REFUSED: BAD,
+}
+"""The pending goal's mark, and the line that says why."""

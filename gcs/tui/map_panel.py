@@ -7,10 +7,13 @@ from rich.text import Text
 from gcs.tui import look
 from gcs.tui.braille import Canvas
 from gcs.tui.scene import Scene
+from gcs.tui.verdict_ahead import Ahead
 from gcs.tui.view import View, fit, nice_length, outline
 
 ARROWS = "↑↗→↘↓↙←↖"
 HOME, PENDING, ACTIVE = "⌂", "◇", "◉"
+REFUSED = "✗"
+"""The pending goal that the gate would refuse."""
 OFF_EVERY = 5
 """Of five dots one: a fence that is switched off."""
 SMALL_FENCE_M = 30.0
@@ -83,7 +86,9 @@ def _markers(canvas: Canvas, view: View, scene: Scene) -> None:
         if seen is not None and seen.pos_enu is not None:
             canvas.line(view.dots(*seen.pos_enu[:2]), goal, look.ACTIVE, every=3)
         canvas.glyph(*goal, ACTIVE, look.ACTIVE)
-    canvas.glyph(*view.dots(*scene.pending.goal_enu[:2]), PENDING, look.PENDING)
+    ahead = scene.ahead.of(scene.pending.goal)
+    mark = REFUSED if ahead is Ahead.REFUSED else PENDING
+    canvas.glyph(*view.dots(*scene.pending.goal_enu[:2]), mark, look.AHEAD[ahead])
     if seen is not None and seen.pos_enu is not None:
         char = "●" if seen.yaw_deg is None else arrow(seen.yaw_deg)
         style = look.DIM if scene.lost else look.VEHICLE

@@ -7,10 +7,14 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from gcs import ipc
-from gcs.gate.states import State
+from gcs.gate.states import LandedState, State
 from gcs.operator import control_text, event_text
 from gcs.operator.conversation import Conversation, TrackedRequest
+from gcs.tui.alarms import Alarms
+from gcs.tui.flight_numbers import FlightNumbers
 from gcs.tui.keyboard import PendingGoal, VelocityKeys
+from gcs.tui.verdict_ahead import VerdictAhead
+from gcs.tui.wind import Wind, wind_of
 
 TRAIL_POINTS = 800
 TRAIL_STEP_M = 0.1
@@ -36,6 +40,9 @@ class Scene:
     """Updated with the station's events; read by the panels ten times a second."""
 
     pending: PendingGoal = field(default_factory=PendingGoal)
+    pending_set: bool = False  # by the operator; else it follows a take-off
+    ahead: VerdictAhead = field(default_factory=VerdictAhead)
+    alarms: Alarms = field(default_factory=Alarms)
     velocity: VelocityKeys | None = None  # in velocity mode
     talk: Conversation = field(default_factory=Conversation)
     zones: list[ipc.FenceShape] = field(default_factory=list)
@@ -44,8 +51,9 @@ class Scene:
     answer: Answer = field(default_factory=Answer)
     progress: ipc.ProgressEvent | None = None
     zoom: int = 0
+    numbers: FlightNumbers = field(default_factory=FlightNumbers)
+    wind: Wind | None = None
     fence_on: bool = True
-    _before_take_off: PendingGoal | None = None
     _up: bool = False
     _key_since_refusal: bool = True
     heard_vehicle: bool = False
@@ -57,6 +65,11 @@ class Scene:
     @property
     def now_ns(self) -> int:
         return 0 if self.snapshot is None else self.snapshot.time_ns
+
+    @property
+    def battery_low_pct(self) -> float:
+        """From where on the policy calls a battery low."""
+        return self.talk.hello.battery_low_pct if self.talk.hello else 0.0
 
     @property
     def in_control(self) -> bool:
@@ -77,28 +90,33 @@ class Scene:
         held = seen is None or seen.state in (State.HOLDING.name, State.NO_VEHICLE.name)
         return None if seen is None or held else seen.active_goal_enu
 
-    def ask(self, request: ipc.Ask) -> ipc.Ask:
+    @property
+    def flies_for_us(self) -> bool:
+        """In the air, and this operator is who commands it: leaving has it held."""
+        seen = self.snapshot
+        if seen is None or self.lost or not seen.armed or seen.landed == LandedState.ON_GROUND.name:
+            return False
+        return seen.in_control is not None and seen.in_control.client == self.talk.number
+
+    def ask(self, request: ipc.Ask, label: str = "") -> ipc.Ask:
         """What is to be sent: the request with its number, kept for its answers."""
-        if request.word == "takeoff":
-            self._before_take_off, self._up = self.pending, False
-        return self.talk.ask(request).sent
+        return self.talk.ask(request, label).sent
 
     def take_hover_point(self) -> ipc.Vec3 | None:
-        """Once after a take-off: where it hovers, if the pending goal is as it was before.
-
-        What was pending on the ground would be a descent now.
-        """
+        """Once after a take-off: where it hovers, if the operator has not set a goal yet."""
         seen = self.snapshot
         if not self._up or seen is None or seen.state != State.HOVERING.name:
             return None
         self._up = False
-        touched = self.pending.goal_enu != (self._before_take_off or self.pending).goal_enu
-        return None if touched else seen.active_goal_enu or seen.pos_enu
+        return None if self.pending_set else seen.active_goal_enu or seen.pos_enu
 
     def update(self, event: ipc.Event) -> None:
         before = self.snapshot
         tracked = self.talk.told(event)
+        self.alarms.told(event, lost=self.lost)
         match event:
+            case ipc.Checked():
+                self.ahead.told(event)
             case ipc.Hello():
                 self.zones = event.fence
             case ipc.Fences(zones):
@@ -108,8 +126,11 @@ class Scene:
                 self.heard_vehicle = self.heard_vehicle or bool(event.vehicle)
                 self._forget_old_answer()
                 self._leave_trail(event.pos_enu)
+                self.numbers.seen(event)
             case ipc.StateEvent():
                 self.last_move = event
+            case ipc.MessageEvent():
+                self.wind = wind_of(event, self.wind)
             case ipc.VerdictEvent():
                 sentence = event_text.refused_by_rule(event) or event.sentence
                 self._show_answer(_label(event, tracked), event.outcome, event.code, sentence)

@@ -13,16 +13,22 @@ from gcs.enu_text import signed_enu
 from gcs.gate.condition import Condition
 from gcs.operator.control_text import control_words
 from gcs.operator.event_text import whole_degrees
-from gcs.tui import look
+from gcs.tui import flight_numbers, look
 from gcs.tui.scene import REFUSED, Scene
 
 OLD_POSITION_S = 0.5
 OLD_HEARTBEAT_S = 2.5
 LOW_BATTERY_PCT = 25.0
+VALUE_COLUMNS = 27
+FLIGHT_ROWS = -3
+"""Before the battery and the link."""
+SHOWN_OFF_M = 0.3
+NEAR_FENCE_M = 5.0
+SHORT_MIN = 3.0
 
 
 def draw(scene: Scene) -> Text:
-    """Eight rows of 32 cells, and one for conditions that are not nominal."""
+    """Rows of 32 cells, the most needed first: a small screen cuts the last ones."""
     seen = scene.snapshot
     panel = Text(no_wrap=True, end="")
     if seen is None or not seen.vehicle:
@@ -32,7 +38,9 @@ def draw(scene: Scene) -> Text:
         panel.append("start one: vehicle-sim, gcs fly --sim\n", look.DIM)
         panel.append("or name its link: --link URL\n", look.DIM)
         return panel
-    for name, value, style in rows(seen, scene.talk.number, lost=scene.lost):
+    told = rows(seen, scene.talk.number, lost=scene.lost)
+    told[FLIGHT_ROWS:FLIGHT_ROWS] = _flight(scene, seen)
+    for name, value, style in told:
         panel.append(f"{name:<5}", look.DIM)
         panel.append(value, style)
         panel.append("\n")
@@ -60,8 +68,11 @@ def _rows(seen: ipc.Snapshot, number: int) -> list[tuple[str, str, str]]:
             f"{control_words(seen, number, short=True)}, {seen.control} {seen.severity}",
             look.SEVERITY.get(seen.severity, look.BAD),
         ),
+        *[("cond" if n == 0 else "", line, look.WARN) for n, line in enumerate(_conditions(seen))],
         ("pos", signed_enu(seen.pos_enu), look.VEHICLE),
         ("", f"{speed} {heading} age {position_age}", _if(seen.position_age_s, OLD_POSITION_S)),
+        ("gps", seen.gps or "-", _gps_style(seen)),
+        ("ekf", seen.estimator or "-", look.PLAIN if seen.estimator in ("", "ok") else look.BAD),
         ("batt", _battery(seen), _battery_style(seen.battery_pct)),
         ("link", f"{seen.rx_hz:.0f} Hz, {seen.lost_pct:.1f} % lost", look.PLAIN),
         (
@@ -69,8 +80,6 @@ def _rows(seen: ipc.Snapshot, number: int) -> list[tuple[str, str, str]]:
             f"heard {_age(seen.heartbeat_age_s)}, sent {seen.setpoint_hz:.0f} Hz",
             _if(seen.heartbeat_age_s, OLD_HEARTBEAT_S),
         ),
-        ("gps", _position_health(seen), _position_health_style(seen)),
-        *([("cond", ", ".join(seen.conditions), look.WARN)] if seen.conditions else []),
     ]
 
 
@@ -91,6 +100,14 @@ def goals(scene: Scene) -> Text:
         item = "-" if seen.mission_seq is None else str(seen.mission_seq)
         line.append(f"  mission {item}/{seen.mission_total}", look.DIM)
     return line
+
+
+def ahead(scene: Scene) -> Text:
+    """One line: what the gate would say to Enter."""
+    style = look.AHEAD[scene.ahead.of(scene.pending.goal)]
+    if scene.velocity is not None or not scene.heard_vehicle or scene.lost:
+        return Text("")
+    return Text(scene.ahead.words(scene.pending.goal), style, no_wrap=True, overflow="ellipsis")
 
 
 def answer(scene: Scene, columns: int) -> Text:
@@ -124,16 +141,45 @@ def _if(age_s: float | None, old_s: float) -> str:
     return look.PLAIN if age_s is not None and age_s <= old_s else look.BAD
 
 
-def _position_health(seen: ipc.Snapshot) -> str:
-    """The GPS and the estimator, in their words."""
-    if seen.estimator in ("", "ok"):
-        return f"{seen.gps or '-'}, EKF {seen.estimator or '-'}"
-    return f"EKF: {seen.estimator}"
+def _conditions(seen: ipc.Snapshot) -> list[str]:
+    words = ", ".join(each.replace("_", " ") for each in seen.conditions)
+    return textwrap.wrap(words, VALUE_COLUMNS, max_lines=2, placeholder=" …")
 
 
-def _position_health_style(seen: ipc.Snapshot) -> str:
-    bad = seen.estimator not in ("", "ok") or Condition.GPS_LOST in seen.conditions
-    return look.BAD if bad else look.PLAIN
+def _flight(scene: Scene, seen: ipc.Snapshot) -> list[tuple[str, str, str]]:
+    """What is reckoned: how far it is, how long it has flown and will, what the wind does."""
+    numbers, limit_pct = scene.numbers, scene.battery_low_pct
+    home_m, fence_m = flight_numbers.home_m(seen), flight_numbers.fence_m(scene.zones, seen.pos_enu)
+    left, off_m = numbers.minutes_left(limit_pct), flight_numbers.off_goal_m(seen)
+    far = [f"home {_metres(home_m)}", f"fence {_metres(fence_m)}"]
+    wind = "" if scene.wind is None else scene.wind.words(scene.now_ns)
+    drift = "" if off_m is None or off_m < SHOWN_OFF_M else f"off by {off_m:.1f} m"
+    time = f"flown {numbers.flown_ns // 60_000_000_000}:{numbers.flown_ns // 10**9 % 60:02d}"
+    if left is not None:
+        time += f", {left:.0f} min to {limit_pct:.0f} %"
+    near = fence_m is not None and fence_m < NEAR_FENCE_M
+    short = left is not None and left < SHORT_MIN
+    told = [
+        ("far", ", ".join(far), look.WARN if near else look.PLAIN),
+        ("time", time, look.WARN if short else look.PLAIN),
+    ]
+    if wind or drift:
+        told.append(("wind", " ".join(filter(None, (wind, drift))), _drift_style(off_m)))
+    return told
+
+
+def _metres(metres: float | None) -> str:
+    return "-" if metres is None else f"{metres:.0f} m" if metres >= 10.0 else f"{metres:.1f} m"
+
+
+def _drift_style(off_m: float | None) -> str:
+    return look.WARN if off_m is not None and off_m >= 1.0 else look.PLAIN
+
+
+def _gps_style(seen: ipc.Snapshot) -> str:
+    if Condition.GPS_LOST in seen.conditions:
+        return look.BAD
+    return look.WARN if Condition.GPS_POOR in seen.conditions else look.PLAIN
 
 
 def _battery(seen: ipc.Snapshot) -> str:

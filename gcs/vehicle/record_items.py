@@ -105,6 +105,7 @@ def hello(
         list(fence),
         client=operator,
         client_ports=list(setup.client_ports),
+        battery_low_pct=setup.policy.battery.low_pct,
     )
 
 

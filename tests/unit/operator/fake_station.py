@@ -15,6 +15,8 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+import msgspec
+
 from gcs import config, ipc
 from gcs.operator.client import Polled, Readable, StationEnded, StationEvent
 
@@ -86,7 +88,8 @@ class FakeStation:
                 east, north, up = (metres or 0.0 for metres in asked.goal_enu or (0.0, 0.0, 0.0))
                 code, sentence = self.refusals.get((east, north, up), ("", ""))
                 outcome = "refused" if code else "accepted"
-                return [ipc.Checked(asked.id, asked.word, outcome, code, sentence)]
+                told = ipc.Checked(asked.id, asked.word, outcome, code, sentence, goal_code=code)
+                return [msgspec.structs.replace(told, goal_sentence=sentence)]
             case ipc.Join() | ipc.Subscribe() | ipc.ListOperations() | ipc.WatchTopics():
                 return []
 

@@ -15,6 +15,8 @@ class ListeningStation:
     def __init__(self, station: FakeStation | None = None) -> None:
         self.station = station or FakeStation()
         self.sent: list[ipc.Command] = []
+        self.looked: list[ipc.Command] = []
+        """What only asks: verdicts before they are needed, and messages to be told."""
         self.time_s = 0.0
         self._on_event: Callable[[StationEvent], None] = lambda _: None
 
@@ -23,8 +25,9 @@ class ListeningStation:
         self.say(*self.station.hello(), *self.station.tick(0.0))
 
     def send(self, command: ipc.Command) -> bool:
-        self.sent.append(ipc.decode_command(ipc.encode(command)))
-        self.say(*self.station.handle(self.sent[-1], self.time_s))
+        wire = ipc.decode_command(ipc.encode(command))
+        (self.looked if isinstance(wire, ipc.Check | ipc.Subscribe) else self.sent).append(wire)
+        self.say(*self.station.handle(wire, self.time_s))
         return True
 
     def close(self) -> StationEnded:
@@ -38,6 +41,10 @@ class ListeningStation:
         for _ in range(round(seconds / TICK_S)):
             self.time_s += TICK_S
             self.say(*self.station.tick(self.time_s))
+
+    def checked_goals(self) -> list[ipc.Maybe3 | None]:
+        """What the gate was asked about, and not asked for."""
+        return [each.asked.goal_enu for each in self.looked if isinstance(each, ipc.Check)]
 
     def requests(self) -> list[str]:
         return [command.word for command in self.sent if isinstance(command, ipc.Ask)]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
 
 import msgspec
 import pytest
@@ -15,42 +14,14 @@ from gcs.operator.client import StationEnded
 from gcs.operator.conversation import Conversation
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.tui.app import FlyApp
-from gcs.tui.keymap import DEFAULT, Keymap, keymap
+from gcs.tui.keymap import keymap
 from gcs.tui.result import SessionResult, print_result, until_hello
 from tests.shares import one_in
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
+from tests.unit.tui.flown import drawn, flown, screen_text
 from tests.unit.tui.listening_station import ListeningStation
 
 pytestmark = pytest.mark.slow  # the screen's own timers
-
-Script = Callable[[FlyApp, ListeningStation, Pilot[None]], Awaitable[None]]
-
-
-def flown(
-    script: Script, size: tuple[int, int] = (120, 40), keys: Keymap = DEFAULT
-) -> tuple[FlyApp, ListeningStation]:
-    """Run the station headless through `script`."""
-
-    async def run() -> tuple[FlyApp, ListeningStation]:
-        station = ListeningStation()
-        app = FlyApp(station, keymap=keys)
-        async with app.run_test(size=size) as pilot:
-            await pilot.pause()
-            await script(app, station, pilot)
-        return app, station
-
-    return asyncio.run(run())
-
-
-async def drawn(app: FlyApp, pilot: Pilot[None]) -> None:
-    await pilot.pause()
-    app.redraw()
-    await pilot.pause()
-
-
-def screen_text(app: FlyApp) -> str:
-    lines = app.screen._compositor.render_strips()
-    return "\n".join("".join(segment.text for segment in strip) for strip in lines)
 
 
 def test_moving_keys_send_no_request_and_one_keyboard_record_a_change() -> None:
@@ -184,14 +155,14 @@ def test_a_fence_that_is_off_is_on_the_screen_until_it_is_on_again() -> None:
     flown(script)
 
 
-def test_after_a_take_off_the_pending_goal_is_where_it_hovers() -> None:
+def test_after_a_take_off_a_goal_that_nobody_has_set_is_where_it_hovers() -> None:
     async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         station.station.pos = (0.04, -0.03, 0.0)
         await pilot.press("m", "t")
         station.fly(1.5)
         await pilot.pause()
         assert app.scene.pending.goal_enu == (0.0, 0.0, 1.5)
-        assert station.sent[-1] == ipc.Pending((0.0, 0.0, 1.5))
+        assert not any(isinstance(command, ipc.Pending) for command in station.sent)
         await pilot.press("right")
         station.fly(1.0)
         await pilot.pause()
@@ -200,9 +171,10 @@ def test_after_a_take_off_the_pending_goal_is_where_it_hovers() -> None:
     flown(script)
 
 
-def test_a_goal_chosen_during_the_take_off_stays() -> None:
+@pytest.mark.parametrize("keys", ["m t right", "right m t"])
+def test_a_goal_set_before_or_during_the_take_off_stays(keys: str) -> None:
     async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
-        await pilot.press("m", "t", "right")
+        await pilot.press(*keys.split())
         station.fly(2.0)
         await pilot.pause()
         assert app.scene.pending.goal_enu == (1.0, 0.0, 0.5)

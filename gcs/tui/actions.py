@@ -1,0 +1,273 @@
+"""What the keys and the typed lines do: everything that an operator sends leaves from here."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Sequence
+from pathlib import Path
+from time import monotonic
+
+import msgspec
+
+from gcs import ipc, request_words, resources
+from gcs.operator import event_text
+from gcs.operator.client import Listened
+from gcs.operator.line_parser import LineError, parse_line
+from gcs.tui import look
+from gcs.tui.command_line import CommandLine
+from gcs.tui.keyboard import PendingGoal, VelocityKeys
+from gcs.tui.keymap import Keymap
+from gcs.tui.keys import ABORT_IN_A_LINE, ALWAYS
+from gcs.tui.leaving import LeavingApp
+from gcs.tui.log_panel import LogPanel
+from gcs.tui.scene import REFUSED, Answer
+
+
+class KeyActions(LeavingApp):
+    """Keys change a pending goal; Enter, the command keys and typed lines send requests.
+
+    Requests are written to the station in the key's handler itself, so that an abort waits for no
+    drawing.
+    """
+
+    def __init__(self, connection: Listened, mission_path: str, keymap: Keymap) -> None:
+        super().__init__(connection)
+        self.keymap = keymap
+        self.bound = {**keymap.actions, **ALWAYS}
+        """What each key does; those of `ALWAYS` whatever keys a user has chosen."""
+        self._of_station = {name for key in keymap.sections[-1][1] for name in key.names}
+        self._mission_path = mission_path
+        self._then: dict[int, Sequence[ipc.Ask]] = {}
+        """What is sent once the request of that number is complete."""
+
+    def redraw(self) -> None:
+        """Draw every panel anew from the scene."""
+        raise NotImplementedError
+
+    # ---------------------------------------------------------------- keys: the one door
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """While a line is typed the keys are its letters."""
+        if action == "press" and self.query_one(CommandLine).display:
+            return parameters[0] in ALWAYS
+        return True
+
+    async def action_press(self, name: str) -> None:
+        """Every key of ours comes through here.  Under an open page nothing is sent unseen: any key
+        closes it, and of all keys only the abort acts as well."""
+        self.scene.note_key()
+        self.interrupted = self.interrupted or name == "ctrl+c"
+        if name not in self._of_station:
+            self._then.clear()  # whoever presses another key has something else in mind
+        does = self.bound[name]
+        aborts = name in (self.keymap.abort, ABORT_IN_A_LINE)
+        line = self.query_one(CommandLine)
+        if line.display and aborts:
+            line.action_close()  # what is pressed next is not meant for it
+        leaves = does == "leave" or name in ("y", "enter")
+        if self._answered(leave=leaves) or self._close_help():
+            if aborts:
+                await self.run_action(does)
+        elif name == "ctrl+c":
+            self._leave("quit")
+        else:
+            await self.run_action(does)
+
+    def on_key(self) -> None:
+        """A key that is not ours."""
+        self._answered(leave=False)
+        self._close_help()
+
+    def _close_help(self) -> bool:
+        """Whether there was a page to close."""
+        page = self.query_one("#help")
+        shown = bool(page.display)
+        page.display = False
+        return shown
+
+    # --------------------------------------------------------------- keys: pending goal
+
+    def _set_pending(self, pending: PendingGoal) -> None:
+        before, self.scene.pending = self.scene.pending, pending
+        if before.goal != pending.goal:
+            self.scene.pending_set = True
+            self._connection.send(ipc.Pending(pending.goal_enu, pending.yaw_deg))
+            self._look_ahead()
+        self.redraw()
+
+    def _look_ahead(self) -> None:
+        """Ask what the gate would say to the pending goal, where that is due."""
+        scene, now_s = self.scene, monotonic()
+        if scene.lost or not scene.heard_vehicle or self._leaving or scene.velocity is not None:
+            return
+        goal = scene.pending.goal
+        if scene.ahead.due(goal, now_s):
+            check = scene.talk.check(_goto(scene.pending))
+            scene.ahead.asked(goal, check.asked.id, now_s)
+            self._connection.send(check)
+
+    def action_move(self, direction: str) -> None:
+        if self.scene.velocity is not None:
+            step_m = self.scene.pending.step_m
+            self.scene.velocity = self.scene.velocity.pressed(direction, step_m, monotonic())
+            self._stream()
+            return
+        self._set_pending(self.scene.pending.moved(direction))
+
+    def action_turn(self, by_deg: float) -> None:
+        seen = self.scene.snapshot
+        self._set_pending(self.scene.pending.turned(by_deg, None if seen is None else seen.yaw_deg))
+
+    def action_free_yaw(self) -> None:
+        self._set_pending(self.scene.pending.with_free_yaw())
+
+    def action_step(self) -> None:
+        self._set_pending(self.scene.pending.with_next_step())
+
+    def action_here(self) -> None:
+        seen = self.scene.snapshot
+        if seen is not None and seen.pos_enu is not None:
+            self._set_pending(self.scene.pending.at(seen.pos_enu))
+
+    # --------------------------------------------------------------------- keys: send
+
+    def _request(self, request: ipc.Ask, label: str = "") -> int:
+        """Send it under a number of its own, which is returned; `label` as it was typed."""
+        numbered = self.scene.ask(request, label)
+        if not self._connection.send(numbered):
+            self.scene.answer = Answer(f"{request.word}: not sent, the link is down", REFUSED)
+        return numbered.id
+
+    def _request_in_turn(self, requests: Sequence[ipc.Ask], label: str = "") -> None:
+        """Each once the one before is complete; a key that is pressed meanwhile drops the rest."""
+        number = self._request(requests[0], "" if requests[1:] else label)
+        self._then = {number: requests[1:]} if requests[1:] else {}
+
+    def _ended(self, event: ipc.EndingEvent) -> None:
+        """A request has ended: what was to follow it does, if it is complete."""
+        rest = self._then.pop(event.id, ())
+        if rest and event.ended == "complete":
+            self._request_in_turn(rest)
+
+    def action_request(self, word: str) -> None:
+        self._request(ipc.Ask(0, word))
+
+    def action_send(self) -> None:
+        self._request(_goto(self.scene.pending))
+
+    def action_take_off(self) -> None:
+        self._request(ipc.Ask(0, "takeoff", up_m=self.scene.pending.take_off_up_m))
+
+    def action_fly_mission(self) -> None:
+        """Start the mission on board; with one of `--mission`, once that is on board."""
+        start = ipc.Ask(0, "mission_start")
+        upload = ipc.Ask(0, "mission_upload", path=self._mission_path)
+        self._request_in_turn([upload, start] if self._mission_path else [start])
+
+    def action_velocity(self) -> None:
+        """Into velocity mode, which is a stream to the station, and out of it."""
+        if self.scene.velocity is not None:
+            self.scene.velocity = None
+            self.action_request("stream_end")
+            return
+        self.scene.velocity = VelocityKeys()
+        self.action_request("stream_begin")
+
+    def _stream(self) -> None:
+        """In velocity mode: what the keys say now, or to stand still; a typed velocity ends."""
+        velocity, now_s = self.scene.velocity, monotonic()
+        if velocity is None or self._leaving:
+            return
+        if velocity.over(now_s):
+            self.action_velocity()
+        else:
+            self._connection.send(ipc.Stream(v_enu=velocity.flown(now_s)))
+
+    def action_switch_fence(self) -> None:
+        self._request(ipc.Ask(0, "fence", on=not self.scene.fence_on))
+
+    # ------------------------------------------------------------------- keys: station
+
+    def action_acknowledge(self) -> None:
+        if not self.scene.alarms.acknowledge():
+            self.scene.answer = Answer("no alarm to acknowledge", "")
+        self.redraw()
+
+    def action_zoom(self, by: int) -> None:
+        self.scene.zoom += by
+        self.redraw()
+
+    def action_fit(self) -> None:
+        self.scene.zoom = 0
+        self.redraw()
+
+    def action_log_level(self) -> None:
+        self.scene.answer = Answer(f"log: {self.query_one(LogPanel).cycle_level()}", "")
+
+    def action_help(self) -> None:
+        self.query_one("#help").display = True
+
+    # --------------------------------------------------------------------- typed lines
+
+    def action_words(self) -> None:
+        self.query_one(CommandLine).open(":")
+
+    def action_search(self) -> None:
+        self.query_one(CommandLine).open("/")
+
+    def on_command_line_entered(self, entered: CommandLine.Entered) -> None:
+        self.scene.note_key()
+        if entered.prompt == ":":
+            self._then.clear()
+            self._run_line(entered.text)
+            self.redraw()
+
+    def on_input_changed(self, changed: CommandLine.Changed) -> None:
+        """What is searched for is shown while it is typed."""
+        if self.query_one(CommandLine).prompt == "/":
+            self.query_one(LogPanel).search(changed.value)
+        self.redraw()
+
+    def _run_line(self, text: str) -> None:
+        try:
+            line = parse_line(text)
+        except LineError as error:
+            self.scene.answer = Answer(f"{error.sentence}; {error.hint}", REFUSED)
+            return
+        match None if line is None else line.action:
+            case None:
+                pass
+            case request_words.SendRequests(requests):
+                self._request_in_turn([_with_file(each) for each in requests], text)
+            case request_words.FlyVelocity(v_enu, seconds):
+                self.scene.velocity = VelocityKeys(v_enu, monotonic() + seconds, typed=True)
+                self.action_request("stream_begin")
+            case request_words.ShowState():
+                seen, number = self.scene.snapshot, self.scene.talk.number
+                self._log_line(event_text.state_line(seen, number), look.PLAIN)
+            case request_words.ShowHelp():
+                for each in request_words.help_lines():
+                    self._log_line(each, look.PLAIN)
+            case request_words.Quit():
+                self.action_leave()
+            case _:
+                told = f"{text}: is for --plain and scripts: here a line does not wait"
+                self.scene.answer = Answer(told, REFUSED)
+
+    def _log_line(self, text: str, style: str, level: int = 4, time_ns: int | None = None) -> None:
+        self.query_one(LogPanel).tell(text, style, level, time_ns)
+
+
+def _with_file(request: ipc.Ask) -> ipc.Ask:
+    """A file is one of this program's folder, which need not be the station's, or is shipped."""
+    if not request.path:
+        return request
+    path = Path(request.path).absolute()
+    if request.word == "mission_upload":
+        with contextlib.suppress(resources.MissionNotFoundError):
+            path = resources.find(request.path).absolute()
+    return msgspec.structs.replace(request, path=str(path))
+
+
+def _goto(pending: PendingGoal) -> ipc.Ask:
+    return ipc.Ask(0, "goto", goal_enu=pending.goal_enu, yaw_deg=pending.yaw_deg)

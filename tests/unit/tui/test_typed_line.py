@@ -1,0 +1,169 @@
+"""The `:` line, its completion, the search of the log, and the question before leaving."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+
+from gcs import ipc
+from gcs.request_words import WORDS, Doer
+from gcs.tui.app import FlyApp
+from gcs.tui.completion import Known, complete, modes_of
+from tests.unit.operator.fake_station import FakeStation
+from tests.unit.tui.flown import drawn, flown, screen_text
+from tests.unit.tui.listening_station import ListeningStation
+
+KNOWN = Known(("demo.toml", "lab3/square.toml"), modes_of("1/1 px4 quadrotor"))
+
+
+async def typed(pilot: Pilot[None], text: str) -> None:
+    """Each letter as a key, then Enter."""
+    names = {" ": "space", "-": "minus", ".": "full_stop", "_": "underscore", "/": "slash"}
+    await pilot.press("colon", *(names.get(letter, letter) for letter in text), "enter")
+
+
+def test_a_typed_word_is_sent_and_space_types_a_space() -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        await typed(pilot, "goto 3 0 -2.5 90")
+        assert station.requests() == ["goto"]
+        (goal,) = station.sent
+        assert isinstance(goal, ipc.Ask)
+        assert (goal.goal_enu, goal.yaw_deg) == ((3.0, 0.0, -2.5), 90.0)
+        await pilot.press("m")
+        assert station.requests() == ["goto", "arm"]
+
+    flown(script)
+
+
+def test_every_word_that_asks_a_station_is_one_of_the_line() -> None:
+    for word in WORDS:
+        if word.doer is not Doer.CONSOLE:
+            assert complete(word.name[:-1], KNOWN).offers.count(word.name) == 1, word.name
+
+
+def test_a_line_that_is_not_understood_is_told_with_what_would_be_right() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        await typed(pilot, "goto 3")
+        await drawn(app, pilot)
+        assert "for example: goto 3 0 2" in screen_text(app)
+        assert station.sent == []
+
+    flown(script)
+
+
+@pytest.mark.parametrize(("keys", "aborts"), [("escape", 0), ("escape escape", 1), ("ctrl+@", 1)])
+def test_abort_is_always_near(keys: str, aborts: int) -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        await pilot.press("colon", "l", "a", "n", "d", *keys.split())
+        assert station.requests() == ["abort"] * aborts
+
+    flown(script)
+
+
+def test_earlier_lines_come_back_and_tab_completes() -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        await typed(pilot, "hold")
+        await typed(pilot, "photo")
+        await pilot.press("colon", "up", "up", "enter")
+        await pilot.press("colon", "t", "a", "k", "tab", "2", "enter")
+        assert station.requests() == ["hold", "photo", "hold", "takeoff"]
+
+    flown(script)
+
+
+def test_a_mission_is_uploaded_and_then_started_by_one_line() -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.state = "HOVERING"
+        await typed(pilot, "mission fly demo")
+        await pilot.pause()
+        assert station.requests() == ["mission_upload", "mission_start"]
+        upload = station.sent[0]
+        assert isinstance(upload, ipc.Ask)
+        assert Path(upload.path).is_file()
+
+    flown(script)
+
+
+def test_a_typed_velocity_ends_by_itself() -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.state = "HOVERING"
+        await typed(pilot, "velocity 1 0 0 0.3")
+        await pilot.pause(0.6)
+        assert station.requests() == ["stream_begin", "stream_end"]
+        assert ipc.Stream(v_enu=(1.0, 0.0, 0.0)) in station.sent
+
+    flown(script)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("tak", "takeoff "), ("mission u", "mission upload "), ("mode AUTO.LO", "mode AUTO.LOITER"),
+        ("fence o", "fence o"), ("disarm ", "disarm --force"),
+        ("mission fly lab", "mission fly lab3/"),
+        ("xyz", "xyz"), ("goto 3", "goto 3"),
+    ],
+)  # fmt: skip
+def test_tab_goes_as_far_as_is_certain(
+    text: str, line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert complete(text, KNOWN).text.startswith(line)
+
+
+def test_files_are_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "field.plan").write_text("{}")
+    (tmp_path / "fields").mkdir()
+    assert complete("mission upload fi", KNOWN).offers == ("field.plan", "fields/")
+    assert complete("mission upload field.", KNOWN).text == "mission upload field.plan"
+
+
+def test_the_log_is_searched_and_shown_whole_again() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.say(*(ipc.LogEvent(0, 2, "gate", f"item {n} reached") for n in (1, 2)))
+        await pilot.press("slash", *"ITEM", "space", "1", "enter")
+        await drawn(app, pilot)
+        assert "item 1 reached" in screen_text(app)
+        assert "item 2 reached" not in screen_text(app)
+        await pilot.press("slash", "escape")
+        await drawn(app, pilot)
+        assert "item 2 reached" in screen_text(app)
+
+    flown(script)
+
+
+@pytest.mark.parametrize(
+    ("keys", "leaves", "aborts"),
+    [("q", 0, 0), ("q q", 1, 0), ("q y", 1, 0), ("q x", 0, 0), ("q space", 0, 1), ("ctrl+c", 1, 0)],
+)
+def test_whoever_flies_is_asked_before_leaving(keys: str, leaves: int, aborts: int) -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.armed, station.station.pos = True, (0.0, 0.0, 2.0)
+        station.fly(0.1)
+        await pilot.pause()
+        await pilot.press(*keys.split())
+        assert sum(isinstance(each, ipc.Leave) for each in station.sent) == leaves
+        assert station.requests() == ["abort"] * aborts
+
+    flown(script)
+
+
+def test_whoever_only_looks_on_leaves_without_a_question() -> None:
+    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.armed, station.station.pos = True, (0.0, 0.0, 2.0)
+        station.station.in_control = ipc.OperatorInfo(2, "gcs fly")
+        station.fly(0.1)
+        await pilot.pause()
+        await pilot.press("q")
+        assert isinstance(station.sent[-1], ipc.Leave)
+
+    flown(script)
+
+
+def test_the_modes_offered_are_the_vehicles_own() -> None:
+    assert "LOITER" in modes_of("1/1 ardupilot quadrotor")
+    assert "AUTO.LOITER" in modes_of(FakeStation().snapshot().vehicle)
+    assert modes_of("") == ()
