@@ -466,13 +466,15 @@ def _redraw(options: Options, opened: Opened, outlet: Reporter) -> Redraw:
 
 
 def _outlet(options: Options) -> Reporter:
+    from importlib.util import find_spec
+
     from vehicle_sim.reporting import Json, Live, Plain
 
     threshold = "debug" if options.verbose else "info"
     if options.control:
         return Json(threshold)
-    if sys.stdout.isatty() and not options.plain and not options.lifeline:
-        return Live(threshold)
+    if sys.stdout.isatty() and not options.plain and not options.lifeline and find_spec("rich"):
+        return Live(threshold)  # an installation of the vehicle alone has no rich
     return Plain(threshold)
 
 

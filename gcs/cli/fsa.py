@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import click
 
+from gcs.gate.states import State
+
+STATES = [state.name for state in State]
+
 
 @click.command(
     name="fsa",
-    epilog="Example:  gcs fsa --format dot | dot -Tsvg -o gate.svg",
+    epilog="Examples: gcs fsa HOVERING  |  gcs fsa --format dot | dot -Tsvg -o gate.svg",
 )
+@click.argument("state", required=False, type=click.Choice(STATES, case_sensitive=False))
 @click.option(
     "--format",
     "form",
@@ -17,11 +22,17 @@ import click
     show_default=True,
     help="Every cell as text, or a graph for Graphviz.",
 )
-def fsa(form: str) -> None:
+def fsa(state: str | None, form: str) -> None:
     """Print the gate's state machine: every state, every event, what follows.
 
-    It is the very table that the gate runs from.
+    With STATE only what leads out of it, a line an event. It is the very table that the gate runs
+    from.
     """
     from gcs.gate.machine import render
 
+    if state is not None:
+        if form == "dot":
+            raise click.UsageError("the graph is of all states: leave out STATE, or --format")
+        click.echo(render.short(State[state]), nl=False)
+        return
     click.echo(render.dot() if form == "dot" else render.text(), nl=False)

@@ -216,6 +216,10 @@ def run(args: Sequence[str] | None = None) -> int:
         # Whoever read our output has gone; click and rich make a SystemExit of it.
         _drop_output()
         return ExitCode.READER_GONE
+    except ModuleNotFoundError as missing:
+        hint = "pip install mavgate brings all that gcs needs; vehicle-sim alone needs less"
+        click.echo("\n".join(error_lines(f"{missing.name} is not installed", hint)), err=True)
+        return ExitCode.USAGE
     except Exception as bug:  # noqa: BLE001  the one place: a bug is told, not spilled
         if _reader_has_gone(bug):
             _drop_output()

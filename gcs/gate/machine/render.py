@@ -38,6 +38,27 @@ def _state(table: Table, state: State) -> Iterator[str]:
             yield from _wrapped(f"  {heading}: ", [event.value for event in events])
 
 
+def short(state: State, table: Table = TABLE) -> str:
+    """What leads out of one state: its events, and the states that may follow, in words."""
+    lines = [f"{state.name} = {state.value}    streams {STREAMS[state].value}"]
+    for event in Event:
+        cell = table[state, event]
+        ways = list(dict.fromkeys(filter(None, map(_way, cell))))
+        if ways:
+            refuses = " (or refused)" if any(branch.refuse is not None for branch in cell) else ""
+            lines.append(f"  {event.value:<18} {' or '.join(ways)}{refuses}")
+    return "\n".join(lines) + "\n"
+
+
+def _way(branch: Branch) -> str:
+    """Where it leads; empty where it changes neither the state nor the goal."""
+    if branch.reply is Reply.PENDING:
+        return Reply.PENDING.value
+    if branch.to is STAY:
+        return ""
+    return f"-> {branch.to.name if isinstance(branch.to, State) else 'what was interrupted'}"
+
+
 def _cell(event: Event, cell: Cell) -> Iterator[str]:
     label = event.value
     for branch in cell:

@@ -372,3 +372,10 @@ def test_the_common_options_are_told_once_and_named_by_each_command() -> None:
 
 def test_the_library_is_seen_by_whoever_asks_what_there_is() -> None:
     assert set(gcs_library.__all__) <= set(dir(gcs_library))
+
+
+def test_a_package_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "gcs.gate.machine", None)
+    ended = gcs("fsa")
+    assert ended.exit_code == ExitCode.USAGE
+    assert "is not installed\n  hint: pip install mavgate" in ended.output

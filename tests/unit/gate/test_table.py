@@ -148,6 +148,16 @@ def test_the_printed_copy_is_the_table(form: str, printed: object) -> None:
     assert result.output == golden
 
 
+def test_one_state_is_printed_in_a_line_an_event_with_what_follows() -> None:
+    lines = render.short(State.HOVERING).splitlines()
+    assert lines[0] == "HOVERING = 1    streams the hold goal"
+    assert "  goto               pending until the tick (or refused)" in lines
+    assert "  hold               -> HOLDING" in lines
+    assert "  tick               -> VERIFYING" in lines
+    assert render.short(State.VERIFYING).splitlines()[1] == "  goal cleared       -> MOVING"
+    assert all(len(render.short(state).splitlines()) < 45 for state in State)
+
+
 def test_a_changed_cell_prints_differently() -> None:
     changed = {**TABLE, (State.MOVING, Event.ABORT): (Branch(),)}
     assert render.text(changed) != render.text()
