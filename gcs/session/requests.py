@@ -85,6 +85,10 @@ class Requests:
                 return request_id
         return None
 
+    def of(self, operator: int) -> list[tuple[int, Asked]]:
+        """Those of one operator that are not over."""
+        return [(each, asked) for each, asked in self._asked.items() if asked.operator == operator]
+
     def close(self, request_id: int) -> Asked:
         """The request is over: refused, superseded, or ended."""
         return self._asked.pop(request_id)

@@ -82,7 +82,7 @@ class Operators:
         """Its connection has ended.  The station lives as long as its first operator, unless it
         is to be kept."""
         self.subscriptions.forget(operator)
-        ended = self._streams.forget(operator)
+        ended = [*self._streams.forget(operator), *self._not_read_on(operator)]
         if operator == FIRST and not self._keep:
             return [*ended, EndSession(reason)]
         return [*ended, *self.control.lost(operator, reason)]
@@ -113,7 +113,16 @@ class Operators:
     def _leave(self, operator: int, reason: str, now_ns: int) -> list[Work]:
         if operator == FIRST and not self._keep:
             return [EndSession(reason)]
-        return self.control.leave(operator, now_ns)
+        return [*self._not_read_on(operator), *self.control.leave(operator, now_ns)]
+
+    def _not_read_on(self, operator: int) -> list[Work]:
+        """It is gone, or goes: nobody waits for what it reads of a vehicle.  What it has set is
+        read back all the same."""
+        return [
+            StopTransfer(request_id)
+            for request_id, asked in self._requests.of(operator)
+            if doer_of(asked.word) is Doer.READER and asked.word != "param_set"
+        ]
 
     # ------------------------------------------------------------------------------ lines
 

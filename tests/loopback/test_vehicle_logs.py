@@ -8,6 +8,7 @@ import zlib
 import pytest
 
 from gcs import ipc
+from gcs.session import inputs
 from tests.loopback.flight import Flight, Personality
 from tests.loopback.lossy_link import CLEAR, Weather
 from vehicle_sim.storage.store import put
@@ -73,3 +74,15 @@ def test_a_reading_is_given_up_when_the_vehicle_is_armed() -> None:
     flight.run(0.1)
     flight.do("arm")
     assert flight.done(reading) == "aborted IN_AIR"
+
+
+def test_what_an_operator_reads_ends_when_it_leaves() -> None:
+    flight = with_log("px4").connected()
+    put(flight.world.servers[0].store, PATHS["px4"], LOG * 50)
+    flight.feed(inputs.OperatorJoined(2, "another", hold_on_leave=False))
+    flight.feed(inputs.OperatorLine(2, ipc.Ask(1000, "file_read", path=PATHS["px4"])))
+    flight.run(0.1)
+    assert flight.done(flight.say("param_get", name="RTL_TYPE")) == "refused BUSY"
+    flight.feed(inputs.OperatorGone(2, "its connection ended"))
+    flight.run(0.1)
+    assert flight.done(flight.say("param_get", name="RTL_TYPE")) == "complete"

@@ -10,7 +10,7 @@ from gcs import ipc
 from gcs.parameter_files.described import PATHS, described
 from gcs.parameter_files.reader import read
 from tests.loopback.flight import Flight, Personality
-from tests.loopback.lossy_link import CLEAR, Weather
+from tests.loopback.lossy_link import CLEAR, Air, Weather
 from tests.sample_files import elsewhere
 
 LOSSY = Weather(loss=0.2)
@@ -93,6 +93,18 @@ def test_what_safety_stands_on_is_set_on_the_ground_and_not_in_the_air(
     assert flight.done(flight.say("param_set", name=free, value=free_value)) == "complete"
     assert flight.parameters.value(free) == free_value
     assert flight.done(flight.say("param_list")) == "complete"  # by messages: files are not read
+
+
+def test_a_write_that_was_lost_is_not_made_up_for_once_the_vehicle_is_armed() -> None:
+    flight = Flight("px4").connected()
+    flight.up = Air(Weather(loss=1.0), 1)
+    ask_id = flight.say("param_set", name="NAV_DLL_ACT", value=2.0)
+    flight.run(0.1)
+    flight.vehicle.arm(False)
+    flight.run(0.2)
+    flight.up = Air(CLEAR, 1)
+    assert flight.done(ask_id) == "aborted IN_AIR"
+    assert flight.parameters.value("NAV_DLL_ACT") == 0.0
 
 
 def test_over_a_link_that_loses_some_it_is_set_or_told(personality: Personality) -> None:

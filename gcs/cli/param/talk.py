@@ -130,7 +130,7 @@ def with_vehicle(
         to["as_json"],
         what,
         anywhere=not to["links"],
-        take=to["take"],
+        take=to["take"] and record,  # to read needs no control
         placed=False,
         wanted=asked_for(),
         told=False,

@@ -293,7 +293,7 @@ class SetParameter(OneParameter):
         encoding = asked.telemetry.autopilot.param_encoding
         if why := why_not(self.name, asked.ask.value, kind, encoding):
             return self.refuse(Refusal(Code.BAD_PARAMETER, why))
-        if refusal := self._refusal():  # it may have taken off meanwhile
+        if refusal := self._refusal():  # it may have been armed meanwhile
             return self.refuse(refusal)
         real = kind is ParamType.REAL32
         self._value = float32(asked.ask.value) if real else int(asked.ask.value)
@@ -302,6 +302,8 @@ class SetParameter(OneParameter):
 
     def _write(self, now_ns: int) -> list[Work]:
         assert self._old is not None
+        if refusal := self._refusal():  # a write that was lost is not made up for in the air
+            return self.abort(refusal.code, refusal.sentence)
         self.wait(now_ns)
         self._sent = False
         sysid, compid = self.asked.target.sysid, self.asked.target.compid
