@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final, Unpack
 import click
 import msgspec
 
+from gcs.cli.common_options import MeetsVehicle
 from gcs.cli.mission.live import LINK_OPTIONS, ToVehicle
 from gcs.cli.options import with_options
 from gcs.exit_codes import ExitCode
@@ -37,7 +38,7 @@ def vehicle_log() -> None:
     """Flight logs that the vehicle keeps, on the ground: list and get them."""
 
 
-@vehicle_log.command("list", epilog=f"Example: gcs vehicle-log list\n\n{EXITS}")
+@vehicle_log.command("list", cls=MeetsVehicle, epilog=f"Example: gcs vehicle-log list\n\n{EXITS}")
 @with_options(*LINK_OPTIONS)
 def list_(**to: Unpack[ToVehicle]) -> None:
     """List the logs: number, bytes, when each was begun (UTC)."""
@@ -55,7 +56,9 @@ def list_(**to: Unpack[ToVehicle]) -> None:
     click.get_current_context().exit(with_vehicle("vehicle-log list", to, task))
 
 
-@vehicle_log.command(epilog=f"Example: gcs vehicle-log get latest --import flight.mcap\n\n{EXITS}")
+@vehicle_log.command(
+    cls=MeetsVehicle, epilog=f"Example: gcs vehicle-log get latest --import flight.mcap\n\n{EXITS}"
+)
 @click.argument("which", metavar="NUMBER|latest")
 @click.option("-o", "--output", help="The new file.  [default: vehicle_log_NUMBER.ulg or .BIN]")
 @click.option("--force", is_flag=True, help="Write over a file that exists.")

@@ -104,7 +104,9 @@ def fly(
     _run("mission fly", _readable(file), **to)
 
 
-@click.command("set-current", epilog=f"Example: gcs mission set-current 3\n\n{EXITS}")
+@click.command(
+    "set-current", cls=MeetsVehicle, epilog=f"Example: gcs mission set-current 3\n\n{EXITS}"
+)
 @click.argument("item", type=click.IntRange(min=0))
 @with_options(*LINK_OPTIONS)
 def set_current(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, Unpack
 import click
 import msgspec
 
+from gcs.cli.common_options import MeetsVehicle
 from gcs.cli.mission.live import LINK_OPTIONS, ToVehicle
 from gcs.cli.options import with_options
 from gcs.exit_codes import ExitCode
@@ -32,7 +33,7 @@ COUNTED: Final = (
 """How the names begin that the vehicle itself counts with: not loaded."""
 
 
-@click.command(epilog=f"Example: gcs param save before.parm\n\n{EXITS}")
+@click.command(cls=MeetsVehicle, epilog=f"Example: gcs param save before.parm\n\n{EXITS}")
 @click.argument("file")
 @click.option("--format", "form", type=click.Choice(FORMATS), help="In place of the suffix's.")
 @click.option("--force", is_flag=True, help="Write over a file that exists.")
@@ -69,7 +70,7 @@ def save(file: str, form: str | None, force: bool, **to: Unpack[ToVehicle]) -> N
     click.get_current_context().exit(with_vehicle("param save", to, task))
 
 
-@click.command(epilog=f"Example: gcs param load before.parm\n\n{EXITS}")
+@click.command(cls=MeetsVehicle, epilog=f"Example: gcs param load before.parm\n\n{EXITS}")
 @click.argument("file")
 @click.option("--yes", is_flag=True, help="Do not ask before anything is sent.")
 @click.option("--dry-run", is_flag=True, help="Show what differs, and send nothing.")
@@ -153,7 +154,7 @@ def _load(
     return failed[0] if failed else ExitCode.DIFFERENT if left else ExitCode.DONE
 
 
-@click.command(epilog=f"Example: gcs param diff before.parm vehicle\n\n{EXITS}")
+@click.command(cls=MeetsVehicle, epilog=f"Example: gcs param diff before.parm vehicle\n\n{EXITS}")
 @click.argument("a")
 @click.argument("b", default=VEHICLE_WORD)
 @with_options(*LINK_OPTIONS)

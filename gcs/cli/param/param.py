@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 import click
 import msgspec
 
+from gcs.cli.common_options import MeetsVehicle
 from gcs.cli.mission.live import LINK_OPTIONS, ToVehicle
 from gcs.cli.options import with_options
 from gcs.cli.param.files import diff, load, save
@@ -34,7 +35,7 @@ def param() -> None:
     """
 
 
-@param.command("list", epilog=f"Example: gcs param list 'RTL_*'\n\n{EXITS}")
+@param.command("list", cls=MeetsVehicle, epilog=f"Example: gcs param list 'RTL_*'\n\n{EXITS}")
 @click.argument("pattern", default="*")
 @with_options(*LINK_OPTIONS)
 def list_(pattern: str, **to: Unpack[ToVehicle]) -> None:
@@ -54,7 +55,9 @@ def list_(pattern: str, **to: Unpack[ToVehicle]) -> None:
     click.get_current_context().exit(with_vehicle("param list", to, task))
 
 
-@param.command(epilog=f"Example: gcs param get RTL_RETURN_ALT NAV_DLL_ACT\n\n{EXITS}")
+@param.command(
+    cls=MeetsVehicle, epilog=f"Example: gcs param get RTL_RETURN_ALT NAV_DLL_ACT\n\n{EXITS}"
+)
 @click.argument("names", nargs=-1, required=True, metavar="NAME...")
 @with_options(*LINK_OPTIONS)
 def get(names: tuple[str, ...], **to: Unpack[ToVehicle]) -> None:
@@ -118,7 +121,7 @@ def set_(name: str, value: str, **to: Unpack[ToVehicle]) -> None:
     click.get_current_context().exit(with_vehicle("param set", to, task, record=True))
 
 
-@param.command(epilog=f"Example: gcs param show NAV_DLL_ACT\n\n{EXITS}")
+@param.command(cls=MeetsVehicle, epilog=f"Example: gcs param show NAV_DLL_ACT\n\n{EXITS}")
 @click.argument("name")
 @with_options(*LINK_OPTIONS)
 def show(name: str, **to: Unpack[ToVehicle]) -> None:
