@@ -28,9 +28,10 @@ PASSES: Final = 5
 """What is switched on brings parameters of its own, and these may bring others."""
 COUNTED: Final = (
     *("STAT_", "LND_FLIGHT_T_", "COM_FLIGHT_UUID", "MIS_TOTAL", "FENCE_TOTAL", "RALLY_TOTAL"),
-    *("FORMAT_VERSION", "SYS_SW_MREV"),
+    *("FORMAT_VERSION", "SYSID_SW_MREV", "BARO1_GND_PRESS", "BARO2_GND_PRESS", "BARO3_GND_PRESS"),
 )
-"""How the names begin that the vehicle itself counts with: not loaded."""
+"""How the names begin of what the vehicle itself counts or measures: not loaded.  An ArduCopter 4.7
+denies to write the pressures (recorded)."""
 
 
 @click.command(cls=MeetsVehicle, epilog=f"Example: gcs param save before.parm\n\n{EXITS}")
@@ -78,7 +79,8 @@ def save(file: str, form: str | None, force: bool, **to: Unpack[ToVehicle]) -> N
 def load(file: str, yes: bool, dry_run: bool, **to: Unpack[ToVehicle]) -> None:
     """Set on the vehicle what differs from FILE, each read back.
 
-    What differs is shown first.  What the vehicle counts itself (STAT_*, totals) is left out.
+    What differs is shown first.  What the vehicle counts or measures itself (STAT_*, totals,
+    pressures) is left out.
     Parameters that appear once others are set, such as behind ArduPilot's *_ENABLE, follow in
     further passes.
     """
@@ -159,7 +161,10 @@ def _load(
 @click.argument("b", default=VEHICLE_WORD)
 @with_options(*LINK_OPTIONS)
 def diff(a: str, b: str, **to: Unpack[ToVehicle]) -> None:
-    """Show where A and B differ: files, or the word `vehicle`, which B is where it is left out."""
+    """Show where A and B differ: files, or the word `vehicle`, which B is where it is left out.
+
+    Beside a vehicle only what the file has is compared.
+    """
     from gcs.cli.param.talk import with_vehicle
     from gcs.parameter_files.model import differences
 
@@ -167,6 +172,9 @@ def diff(a: str, b: str, **to: Unpack[ToVehicle]) -> None:
 
     def compared() -> ExitCode:
         found = differences(sides[a], sides[b])
+        if VEHICLE_WORD in (a, b):
+            file = sides[a] if b == VEHICLE_WORD else sides[b]
+            found = [each for each in found if each.name in file]
         if to["as_json"]:
             rows = [{"name": each.name, "a": _value(each.a), "b": _value(each.b)} for each in found]
             click.echo(msgspec.json.encode(rows).decode())

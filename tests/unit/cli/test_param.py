@@ -110,6 +110,9 @@ def test_a_file_is_saved_and_differs_from_another(station: Station, tmp_path: Pa
     differs = gcs("param", "diff", file, "vehicle")
     assert differs.exit_code == ExitCode.DIFFERENT
     assert differs.output.split() == ["RTL_ALT", "15.5", "20"]
+    part = tmp_path / "part.parm"
+    part.write_text("RTL_ALT 20\n")
+    assert gcs("param", "diff", "vehicle", part).exit_code == ExitCode.DONE
     asked = len(station.asked)
     assert gcs("param", "diff", file, file).exit_code == ExitCode.DONE
     assert len(station.asked) == asked
