@@ -12,6 +12,7 @@ from gcs.cli.common_options import COMMON, MeetsVehicle
 from gcs.cli.options import (
     TAKE,
     UTF8,
+    WARNING,
     Seconds,
     asked_for,
     log_level,
@@ -19,7 +20,6 @@ from gcs.cli.options import (
     typed,
 )
 from gcs.operator import line_parser
-from gcs.operator.warning_filter import WARNING
 
 EXITS = (
     "Exit codes: 0 done, 2 usage, 3 no vehicle, 5 refused by the vehicle, 6 refused by the gate, "

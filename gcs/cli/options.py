@@ -204,6 +204,10 @@ def typed(name: str) -> bool:
     return source in (ParameterSource.COMMANDLINE, ParameterSource.ENVIRONMENT)
 
 
+WARNING = 3
+"""The level from which on commands that send one request show the log."""
+
+
 def log_level(usual: int, *, quiet: bool, verbose: bool) -> int:
     """From which level of the log on a command shows lines; 1 debug .. 5 fatal."""
     return 1 if verbose else usual + quiet

@@ -11,6 +11,7 @@ from gcs.cli.common_options import COMMON, MeetsVehicle
 from gcs.cli.mission.files import MISSION_FILE
 from gcs.cli.options import (
     UTF8,
+    WARNING,
     Seconds,
     asked_for,
     log_level,
@@ -20,7 +21,6 @@ from gcs.cli.options import (
 )
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
-from gcs.operator.warning_filter import WARNING
 
 EXITS = (
     "Exit codes: 0 done, 3 no vehicle, 4 bad file, 5 refused by the vehicle, 6 refused by the "
