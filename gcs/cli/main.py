@@ -64,7 +64,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     "Files": {
         "mission": Entry(
             "gcs.cli.mission.mission:mission",
-            "Mission files: check, show, convert, upload, download, fly, set-current, clear.",
+            "Mission files: check, show, convert, new, upload, download, fly, set-current, clear.",
             more="gcs.cli.mission.live:COMMANDS",
         ),
         "param": Entry(

@@ -10,6 +10,7 @@ import click
 
 from gcs.cli.mission.convert import convert
 from gcs.cli.mission.files import AUTOPILOT, FORCE, HOME, MISSION_FILE, read_plan, write_file
+from gcs.cli.mission.new import new
 from gcs.cli.options import AS_JSON, POLICY, with_options
 from gcs.exit_codes import ExitCode
 
@@ -128,3 +129,4 @@ def _grouped(cells: tuple[Flown, ...]) -> Iterator[tuple[str, Flown]]:
 
 
 mission.add_command(convert)
+mission.add_command(new)

@@ -49,10 +49,10 @@ def check_lines(checked: Checked) -> Iterator[str]:
     for finding in checked.findings:
         yield from finding_lines(plan, finding)
     if checked.verification is None:
-        yield f"verdict: {_summary(checked)}"
+        yield f"verdict: {verdict(checked)}"
         return
-    for verdict in checked.verification.verdicts:
-        yield _verdict_line(plan, verdict)
+    for leg in checked.verification.verdicts:
+        yield _verdict_line(plan, leg)
     for problem in checked.verification.path.problems:
         yield f"  refused  {problem.sentence}"
     for landing in checked.verification.bad_landings:
@@ -61,7 +61,14 @@ def check_lines(checked: Checked) -> Iterator[str]:
         refusal = checked.verification.beyond_battery
         yield f"  refused  {refusal.code}: {refusal.sentence}"
     yield from _return_lines(checked.verification)
-    yield f"verdict: {_summary(checked)}"
+    yield f"verdict: {verdict(checked)}"
+
+
+def against_it(checked: Checked) -> Iterator[str]:
+    """Of the lines of a check those that are against flying it."""
+    yield from (
+        line for line in check_lines(checked) if line.startswith(("  refused", "error", "warning"))
+    )
 
 
 def _zones(count: int) -> str:
@@ -92,7 +99,8 @@ def _return_lines(verification: Verification) -> Iterator[str]:
         yield f"  {why}"
 
 
-def _summary(checked: Checked) -> str:
+def verdict(checked: Checked) -> str:
+    """Whether it may be flown, in a few words."""
     verification = checked.verification
     if checked.exit_code is ExitCode.BAD_FILE:
         return "not to be flown as it is"
@@ -138,7 +146,7 @@ def check_json(checked: Checked) -> str:
             [] if verification is None else [b.item + 1 for b in verification.blocked_returns]
         ),
         "flight_s": _flight_s(checked.flight),
-        "verdict": _summary(checked),
+        "verdict": verdict(checked),
         "exit_code": int(checked.exit_code),
     }
     return json.dumps(document, indent=2, allow_nan=False)

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from gcs.cli.mission.convert import convert
+from gcs.cli.mission.mission import show
+from gcs.cli.mission.new import new
 from gcs.exit_codes import ExitCode
 from gcs.plan.formats.reader import read
 from gcs.resources import find
@@ -79,6 +83,21 @@ def test_a_route_without_heights_is_flown_at_one(tmp_path: Path) -> None:
     gcs("mission", "convert", drawn, "-o", out, "--height", "12")
 
     assert [item.place[2] for item in read("a.plan", out.read_bytes()).items] == [12.0, 12.0]
+
+
+EXAMPLES = [
+    words
+    for command in (convert, show, *new.commands.values())
+    for words in re.findall(r"Example: gcs (.+)", command.epilog or "")
+]
+
+
+def test_every_example_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert len(EXAMPLES) == 5
+    for words in EXAMPLES:
+        result = gcs(*words.split())
+        assert result.exit_code == ExitCode.DONE, (words, result.output)
 
 
 WRONG: list[tuple[tuple[str, ...], ExitCode, str]] = [

@@ -1,0 +1,1 @@
+"""Missions made from a polygon, a line or a point: surveys, corridors, orbits.  Pure geometry."""
