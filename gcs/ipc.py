@@ -55,7 +55,8 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
 
     `word` is one of: control arm disarm takeoff goto orbit land rtl hold abort resume photo mode
     fence mission_start mission_upload mission_download mission_clear mission_set_current
-    mission_check param_list param_get param_set file_read file_list file_crc log_list log_read
+    mission_check fence_upload fence_download fence_clear fence_put rally_upload rally_download
+    rally_clear param_list param_get param_set file_read file_list file_crc log_list log_read
     stream_begin stream_end station_take station_release station_end.
     Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
     for every one that flies, and the first of them answers.
@@ -69,7 +70,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     mode: str = ""  # mode: the autopilot's own name; mission_check: wait until it is shown
     force: bool = False  # disarm
     on: bool = True  # fence
-    path: str = ""  # mission_upload: file to read; mission_download: where to write;
+    path: str = ""  # ..._upload: file to read; ..._download: where to write;
     #   file_read, file_list, file_crc: on the vehicle
     item: int = 0  # mission_set_current: where the next start begins, as MAVLink counts (seq);
     #   log_read: the vehicle's number of the log

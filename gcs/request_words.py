@@ -189,6 +189,19 @@ _FOR_SECONDS = Argument("SECONDS", ArgumentKind.SECONDS, optional=True)
 _FILE = (Argument("FILE", ArgumentKind.FILE, "path"),)
 _TYPED = ActsAtOnce.TYPED
 
+
+def _of_plan(name: str, what: str) -> tuple[Word, ...]:
+    """Words for a fence or rally points, beside those for missions."""
+    send = f"send the {name} of a file to the vehicle and read it back"
+    read = f"read {what} into a file"
+    transfer = Doer.TRANSFER
+    return (
+        Word(f"{name} upload", send, _FILE, f"missions/{name}.plan", doer=transfer),
+        Word(f"{name} download", read, _FILE, "on_board.plan", doer=transfer),
+        Word(f"{name} clear", f"remove {what}", doer=transfer),
+    )
+
+
 TABLE: Final[tuple[Word, ...]] = (
     Word("control", "take control of a flying vehicle", moves=True, gate=gate.TakeControl()),
     Word("arm", "arm the motors", moves=True, gate=gate.Arm()),
@@ -312,7 +325,14 @@ TABLE: Final[tuple[Word, ...]] = (
         "on_board.plan",
         doer=Doer.TRANSFER,
     ),
-    Word("mission clear", "remove the mission on board", doer=Doer.TRANSFER),
+    Word("mission clear", "remove the mission on board; fence and rally stay", doer=Doer.TRANSFER),
+    Word(
+        "fence put",
+        "put the policy's own fence and its actions on board: the vehicle then keeps it itself",
+        doer=Doer.TRANSFER,
+    ),
+    *_of_plan("fence", "the fence on board"),
+    *_of_plan("rally", "the rally points on board"),
     Word(
         "param get",
         "read a parameter of the vehicle",
@@ -405,7 +425,7 @@ WORD_BY_NAME: dict[str, Word] = {word.name: word for word in WORDS}
 def label(request: Ask) -> str:
     """A request as an operator would type it: the table read backwards."""
     name = request.word
-    for first in ("mission", "param", "file", "log", "station", "stream"):
+    for first in ("mission", "fence", "rally", "param", "file", "log", "station", "stream"):
         name = name.replace(f"{first}_", f"{first} ")
     parts: list[str] = [name]
     if request.word == "takeoff":

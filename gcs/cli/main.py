@@ -74,6 +74,13 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "vehicle-log": Entry(
             "gcs.cli.vehicle_log:vehicle_log", "Flight logs that the vehicle keeps: list, get."
         ),
+        "fence": Entry(
+            "gcs.cli.plan_parts:fence",
+            "A vehicle's own fence: check, show, upload, download, clear, put.",
+        ),
+        "rally": Entry(
+            "gcs.cli.plan_parts:rally", "Rally points: check, show, upload, download, clear."
+        ),
         "key": Entry("gcs.cli.key:key", "Signing keys: new, show, install on a vehicle, remove."),
         "topic": Entry(
             "gcs.cli.topic.topic:topic", "Messages live or recorded: list, echo, hz, plot."

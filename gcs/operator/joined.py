@@ -138,6 +138,6 @@ class JoinedStation(EventReader):
 def _with_path_from_here(ask: ipc.Ask) -> ipc.Ask:
     """The station may have been started in another folder; a shipped mission's name stays one."""
     path = Path(ask.path)
-    if ask.word == "mission_download" or path.exists():
+    if ask.word.endswith("_download") or path.exists():
         return msgspec.structs.replace(ask, path=str(path.absolute()))
     return ask

@@ -219,6 +219,55 @@ class Station:
         """Verify a mission file, send it to the vehicle and read it back."""
         return self.request(ipc.Ask(0, "mission_upload", path=path), wait, timeout_s)
 
+    def download(
+        self, path: str, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Read mission, fence and rally points on board, and where home is, into a file."""
+        return self.request(ipc.Ask(0, "mission_download", path=path), wait, timeout_s)
+
+    def clear_mission(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Remove the mission on board; its fence and rally points stay."""
+        return self.request(ipc.Ask(0, "mission_clear"), wait, timeout_s)
+
+    def put_fence(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Put the policy's own fence on board, so that the vehicle keeps it when the link is down.
+
+        On the ground; else Refused with IN_AIR.
+        """
+        return self.request(ipc.Ask(0, "fence_put"), wait, timeout_s)
+
+    def upload_fence(
+        self, path: str, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Send the fence of a file to the vehicle, in place of the one on board."""
+        return self.request(ipc.Ask(0, "fence_upload", path=path), wait, timeout_s)
+
+    def download_fence(
+        self, path: str, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Read the fence on board into a file."""
+        return self.request(ipc.Ask(0, "fence_download", path=path), wait, timeout_s)
+
+    def clear_fence(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Remove the fence on board.  On the ground; else Refused with IN_AIR."""
+        return self.request(ipc.Ask(0, "fence_clear"), wait, timeout_s)
+
+    def upload_rally(
+        self, path: str, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Send the rally points of a file to the vehicle, in place of those on board."""
+        return self.request(ipc.Ask(0, "rally_upload", path=path), wait, timeout_s)
+
+    def download_rally(
+        self, path: str, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """Read the rally points on board into a file."""
+        return self.request(ipc.Ask(0, "rally_download", path=path), wait, timeout_s)
+
+    def clear_rally(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
+        """Remove the rally points on board."""
+        return self.request(ipc.Ask(0, "rally_clear"), wait, timeout_s)
+
     def start_mission(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
         """Fly the mission on board."""
         return self.request(ipc.Ask(0, "mission_start"), wait, timeout_s)

@@ -3,7 +3,8 @@
 Autopilots store less than MISSION_ITEM_INT can say; `stored.py` has what each of them keeps of
 every parameter.  Both give other frames back than were sent, with the same datum; ArduPilot puts
 its own home at index 0, gives items that have no place back with frame 0, and keeps heights in
-centimetres.  Everything passes through float32.
+centimetres.  Of a fence and of rally points PX4 gives no autocontinue back, and every height as one
+above the sea, with the number that was sent (recorded, 1.14.3).  Everything passes through float32.
 """
 
 from __future__ import annotations
@@ -79,7 +80,8 @@ def _differences(ours: WireItem, theirs: WireItem, autopilot: AutopilotName) -> 
     for number, (as_stored, sent, back) in enumerate(params, start=1):
         if not as_stored.same(sent, back):
             differ(f"param{number}", f"{sent:g}", f"{back:g}")
-    if autopilot == "px4" and ours.autocontinue != theirs.autocontinue:
+    of_fence = autopilot == "px4" and ours.mission_type != MissionType.MISSION
+    if autopilot == "px4" and not of_fence and ours.autocontinue != theirs.autocontinue:
         differ("autocontinue", ours.autocontinue, theirs.autocontinue)
 
     has_place = commands.has_place(ours.command, ours.frame) and ours.frame != MavFrame.MISSION
@@ -90,7 +92,7 @@ def _differences(ours: WireItem, theirs: WireItem, autopilot: AutopilotName) -> 
             differ("param5, param6", (ours.x, ours.y), (theirs.x, theirs.y))
         return found
     datums = [_DATUM.get(frame, f"frame {frame}") for frame in (ours.frame, theirs.frame)]
-    if datums[0] != datums[1]:
+    if datums[0] != datums[1] and not of_fence:
         differ("frame", *datums)
     for axis, here, there in (("latitude", ours.x, theirs.x), ("longitude", ours.y, theirs.y)):
         if abs(here - there) > _DEGREE_UNITS:

@@ -105,7 +105,8 @@ class VehicleParts:
 
     def view(self, telemetry: Telemetry) -> VehicleView:
         """What a mission job is to know of it."""
-        return VehicleView(telemetry, self.port.gate.state, self.port.policy)
+        state, policy = self.port.gate.state, self.port.policy
+        return VehicleView(telemetry, state, policy, self.fence.items, self.returns.rally.items)
 
     def learn(self, found: Iterable[settings.Found], telemetry: Telemetry) -> list[Work]:
         """What the vehicle's own settings say."""

@@ -204,17 +204,8 @@ class Vehicle(VehicleParts):
 
     def ask_mission(self, asked: AskMission, now_ns: int) -> list[Work]:
         """A mission transfer, or the start of the mission on board."""
-        state, policy = self.port.gate.state, self.port.policy
-        work = self.missions.ask(
-            asked.request_id,
-            asked.ask,
-            self.telemetry,
-            state,
-            policy,
-            now_ns,
-            asked.plan,
-            asked.kind,
-        )
+        view = None if self.telemetry is None else self.view(self.telemetry)
+        work = self.missions.ask(asked.request_id, asked.ask, view, now_ns, asked.plan, asked.kind)
         return self.ask_for_control(now_ns) + self.with_plans_on_board(work, now_ns)
 
     def ask_orbit(self, asked: AskOrbit, now_ns: int) -> list[Work]:

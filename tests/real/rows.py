@@ -3,7 +3,7 @@
 import itertools
 import math
 import random
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tests.real.autopilots import PX4, Kind
 from tests.real.truth import Vector
@@ -169,6 +169,18 @@ def hostile() -> list[Row]:
     return [Row("hostile", "bridge", goal_m=20.0, word=trick) for trick in TRICKS]
 
 
+def cuts() -> list[Row]:
+    """The link is cut at so many metres before the fence, at full speed towards it: first with the
+    vehicle's settings as delivered, then with the policy's fence on board."""
+    cut = [
+        Row("cut", direction=direction, leg_m=160.0, goal_m=97.8, radius_m=100.0, ceiling_m=50.0,
+            figure=speed, when=before_m)
+        for before_m, direction in zip((60.0, 45.0, 38.0, 32.0, 26.0), EIGHT, strict=False)
+        for speed in (0.0, 10.0)
+    ]  # fmt: skip
+    return [*cut[2:6], *(replace(row, word="put") for row in cut)]
+
+
 def missions() -> list[Row]:
     figures = (("", 0.0), ("delay", 0.2), ("delay", 0.5), ("loss", 0.25))
     return [Row("mission", trouble=trouble, figure=figure) for trouble, figure in figures]
@@ -199,4 +211,5 @@ def whole(kind: Kind, seed: int, count: int) -> list[list[Row]]:
         [*stops(rng), *held_at_the_end(), *states()],
         troubles,
         [*missions(), *hostile()],
+        [Row("plans"), *cuts()],
     ]

@@ -1,11 +1,14 @@
 """How a row is flown, and what must be so; each returns what became of it, and what is wrong."""
 
+import json
 import math
+import re
 import threading
 import time
 from collections.abc import Callable
 
 from gcs.gate.policy.parse import DEFAULT
+from gcs.plan.formats.reader import read
 from tests.real.autopilots import PX4
 from tests.real.flight import Flight
 from tests.real.pilots import Bridge, outcome_of
@@ -319,6 +322,106 @@ def attempt(flight: Flight, row: Row, bridge: Bridge) -> str:
     return peer.refusal_since(0) or "no word of a refusal"
 
 
+def plans(flight: Flight, row: Row) -> Told:
+    """A fence and rally points about home, there and back; cleared, there is none."""
+    flight.on_ground(row)
+    station = flight.library(row).station
+    at = flight.observer.mavlink.messages["HOME_POSITION"]
+    lat, lon = at.latitude / 1e7, at.longitude / 1e7
+
+    def ring(north: float, east: float, half: float) -> list[list[float]]:
+        corners = ((half, half), (half, -half), (-half, -half), (-half, half))
+        return [[lat + (north + n) * 9e-6, lon + (east + e) * 13e-6] for n, e in corners]
+
+    document = {
+        "fileType": "Plan", "groundStation": "QGroundControl", "version": 1,
+        "mission": {"items": [], "version": 2, "plannedHomePosition": [0, 0, 0]},
+        "geoFence": {
+            "version": 2,
+            "polygons": [
+                {"inclusion": inclusion, "polygon": ring(*place), "version": 1}
+                for inclusion, place in ((True, (0.0, 0.0, 50.0)), (False, (30.0, 0.0, 5.0)))
+            ],
+            "circles": [{"inclusion": False, "version": 1,
+                         "circle": {"center": [lat, lon + 4e-4], "radius": 7.5}}],
+        },
+        "rallyPoints": {"version": 2, "points": [[lat, lon + 2e-4, 5.0], [lat, lon - 2e-4, 8.0]]},
+    }  # fmt: skip
+    sent, back = flight.folder / "sent.plan", flight.folder / "back.plan"
+    sent.write_text(json.dumps(document))
+    told = outcome_of(lambda: station.upload(str(sent), timeout_s=60.0))
+    if told != "complete":
+        return told, told
+    station.download(str(back), timeout_s=60.0)
+    there, here = (read(str(path), path.read_bytes()) for path in (sent, back))
+    same = alike(there.fence.zones, here.fence.zones) and alike(there.rally, here.rally)
+    home = json.loads(back.read_text())["mission"]["plannedHomePosition"]
+    near = math.dist(home[:2], (lat, lon)) < 1e-5
+    told = outcome_of(lambda: station.clear_fence(timeout_s=60.0))
+    told += outcome_of(lambda: station.clear_rally(timeout_s=60.0))
+    gone = outcome_of(lambda: station.download(str(back), timeout_s=60.0))
+    text = f"same {same}, home {near}, {told}, then {gone}"
+    return text, "" if same and near and "NO_MISSION" in gone else text
+
+
+def alike(one: object, other: object) -> bool:
+    """But for the last digits of degrees, and float32."""
+    numbers = r"-?[0-9]+\.[0-9]+(?:e-?[0-9]+)?"
+    left, right = (re.sub(r"where='[^']*'|name='[^']*'", "", repr(each)) for each in (one, other))
+    if re.sub(numbers, "#", left) != re.sub(numbers, "#", right):
+        return False
+    pairs = zip(re.findall(numbers, left), re.findall(numbers, right), strict=True)
+    return all(abs(float(a) - float(b)) < 2e-7 for a, b in pairs)
+
+
+SILENT_S = 25.0
+
+
+def cut(flight: Flight, row: Row) -> Told:
+    """The link is cut so near to the fence, at full speed towards it.  With the policy's fence on
+    board it is never outside; without it that is told."""
+    flight.on_ground(row)
+    observer, pilot = flight.observer, flight.library(row)
+    if row.word == "put":
+        put = outcome_of(lambda: pilot.station.put_fence(timeout_s=60.0))
+        if put != "complete":
+            return put, put
+    flight.in_air_at(row, row.start)
+    taken = pilot.take()
+    if taken != "complete":
+        return taken, f"control: {taken}"
+    was: list[float] = []
+
+    def ahead() -> float:
+        return sum(u * metres for u, metres in zip(row.unit, flight.from_home, strict=True))
+
+    def happen() -> None:
+        at_m = row.radius_m - row.when
+        if observer.wait(lambda: ahead() > at_m, 60.0):
+            was.append(observer.now.speed_m_s)
+            flight.relay.trouble(silent_s=SILENT_S)
+
+    timer = threading.Timer(0.0, happen)
+    timer.start()
+    east, north, _ = (row.figure * u for u in row.unit)
+    if row.figure:
+        told = outcome_of(lambda: pilot.station.velocity(east, north, 0.0, seconds=35.0))
+    else:
+        told = pilot.goto(flight.local(row.at(row.goal_m)))
+    timer.join()
+    observer.at_rest(REST_S)
+    flight.relay.trouble()
+    first = len(observer.flown_from_home) if flight.marks is None else flight.marks[0]
+    out_m = -min(row.clearance_m(place) for place in observer.flown_from_home[first:])
+    text = f"cut at {was[0]:.1f} m/s, {out_m:.1f} m out; {told}" if was else f"not cut: {told}"
+    if row.word != "put":
+        flight.marks = None  # as delivered it may leave
+    flight.leave()
+    if flight.flying:
+        observer.fly_to((0.0, 0.0, HEIGHT_M), 90.0)
+    return text, "" if was else text
+
+
 KINDS: dict[str, Callable[[Flight, Row], Told]] = {
     "approach": approach,
     "stop": stop,
@@ -328,4 +431,6 @@ KINDS: dict[str, Callable[[Flight, Row], Told]] = {
     "mission": mission,
     "hold in": hold_in,
     "hostile": hostile,
+    "plans": plans,
+    "cut": cut,
 }

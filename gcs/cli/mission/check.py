@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gcs.exit_codes import ExitCode
 from gcs.gate.airspace.projection import Origin, Projection
@@ -17,7 +17,7 @@ from gcs.plan.lint import lint, worst
 from gcs.plan.model import AutopilotName, Geodetic, Plan
 from gcs.plan.place import georeference
 from gcs.plan.settings import USUAL
-from gcs.plan.verify import Verification, verify
+from gcs.plan.verify import Verification, bad_landings, verify
 from gcs.plan.zones import zone_specs
 from gcs.policy_file import PolicyFileError, load_policy
 
@@ -46,13 +46,16 @@ class Checked:
     verification: Verification | None
     start_refusal: Refusal | None
     flight: FlightTime | None = None
+    bad_landings: tuple[Refusal, ...] = ()
+    """Rally points where the policy lets nobody land, of a plan that flies nowhere."""
 
     @property
     def exit_code(self) -> ExitCode:
         if worst(list(self.findings)) is Level.ERROR:
             return ExitCode.BAD_FILE
         flown = self.verification
-        if self.start_refusal is not None or (flown is not None and flown.refusal is not None):
+        refused = flown is not None and flown.refusal is not None
+        if self.start_refusal is not None or refused or self.bad_landings:
             return ExitCode.REFUSED_BY_GATE
         return ExitCode.DONE
 
@@ -68,12 +71,15 @@ def check_plan(
         raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
     at_home, notes = choose_home(plan, autopilot, home)
     findings = (*notes, *lint(plan, autopilot, at_home))
-    if at_home is None or not plan.items or worst(list(findings)) is Level.ERROR:
-        return Checked(plan, autopilot, policy, at_home, findings, None, None)
+    nothing = Checked(plan, autopilot, policy, at_home, findings, None, None)
+    if at_home is None or not (plan.items or plan.rally) or worst(list(findings)) is Level.ERROR:
+        return nothing
     laid = lay_out(plan, autopilot, at_home)
     placed, ground = laid.placed, laid.ground
     origin, home_ned = laid.projection.origin, ground.home_ned
     verifier = verifier_for(policy, autopilot, home_ned, origin, zone_specs(placed.fence))
+    if not plan.items:
+        return replace(nothing, bad_landings=bad_landings(ground, verifier))
     verification = verify(placed, ground, verifier)
     start = check_start(verifier, home_ned)
     time = flight_time(placed, ground)

@@ -62,8 +62,11 @@ def upload(
     file: str,
     **to: Unpack[ToVehicle],
 ) -> None:
-    """Verify a mission file, send it to the vehicle, read it back and compare."""
-    _run("mission upload", _readable(file), **to)
+    """Verify a mission file, send it to the vehicle, read it back and compare.
+
+    Its fence and rally points are sent too; a file that has none leaves those on board as they are.
+    """
+    run_word("mission upload", readable(file), **to)
 
 
 @click.command(cls=MeetsVehicle, epilog=f"Example: gcs mission download on_board.plan\n\n{EXITS}")
@@ -82,15 +85,16 @@ def download(
     force: bool,
     **to: Unpack[ToVehicle],
 ) -> None:
-    """Read the mission on board into FILE, mission.plan if none is named.
+    """Read the mission on board into FILE, mission.plan if none is named, with the fence and the
+    rally points on board, and where home is. What the format cannot keep is said.
 
     The suffix chooses the format: .plan, .waypoints, .txt or .csv.
     """
     if file is not None and output is not None:
         raise ExitError(ExitCode.USAGE, f"one file, not two: {file} and {output}")
     path = file or output or "mission.plan"
-    _check_output(path, force)
-    _run("mission download", path, **to)
+    check_output(path, force)
+    run_word("mission download", path, **to)
 
 
 @click.command(cls=MeetsVehicle, epilog=f"Example: gcs mission fly missions/demo.toml\n\n{EXITS}")
@@ -101,7 +105,7 @@ def fly(
     **to: Unpack[ToVehicle],
 ) -> None:
     """Upload a mission file, then start it and wait for its end."""
-    _run("mission fly", _readable(file), **to)
+    run_word("mission fly", readable(file), **to)
 
 
 @click.command(
@@ -118,7 +122,7 @@ def set_current(
 
     In the air only, and while no mission is flown; the start itself verifies the way there.
     """
-    _run("mission set-current", item, **to)
+    run_word("mission set-current", item, **to)
 
 
 @click.command(cls=MeetsVehicle, epilog=f"Example: gcs mission clear\n\n{EXITS}")
@@ -126,14 +130,15 @@ def set_current(
 def clear(
     **to: Unpack[ToVehicle],
 ) -> None:
-    """Remove the mission on board."""
-    _run("mission clear", **to)
+    """Remove the mission on board. Its fence and rally points stay, which is said: see gcs fence
+    clear, gcs rally clear."""
+    run_word("mission clear", **to)
 
 
 COMMANDS = (upload, download, fly, set_current, clear)
 
 
-def _check_output(output: str, force: bool) -> None:
+def check_output(output: str, force: bool) -> None:
     """Whether a mission may be written there, checked before any station is started."""
     from pathlib import Path
 
@@ -150,7 +155,7 @@ def _check_output(output: str, force: bool) -> None:
         raise ExitError(ExitCode.USAGE, f"{output}: exists already", "--force writes over it")
 
 
-def _readable(file: str) -> str:
+def readable(file: str) -> str:
     """Path of the file as typed, or of the shipped mission of that name.
 
     It is read here first, so that a file that is no plan is refused before any station is
@@ -163,7 +168,7 @@ def _readable(file: str) -> str:
     return str(resources.find(file))
 
 
-def _run(word: str, *arguments: str | int, **to: Unpack[ToVehicle]) -> None:
+def run_word(word: str, *arguments: str | int, **to: Unpack[ToVehicle]) -> None:
     from gcs.cli import oneshot_session
     from gcs.request_words import WORD_BY_NAME, SendRequests, label
 

@@ -22,6 +22,7 @@ from gcs.plan import commands
 from gcs.plan.errors import Finding, Level
 from gcs.plan.flight_time import FlightTime
 from gcs.plan.model import Circle, Frame, Geodetic, Geographic, Item, Local, Plan, Zone
+from gcs.plan.parts import held
 from gcs.plan.verify import LegVerdict, Verification
 
 _LEVEL_WORDS = {Level.NOTE: "note", Level.WARNING: "warning", Level.ERROR: "error"}
@@ -49,6 +50,8 @@ def check_lines(checked: Checked) -> Iterator[str]:
     for finding in checked.findings:
         yield from finding_lines(plan, finding)
     if checked.verification is None:
+        for refusal in checked.bad_landings:
+            yield f"  refused  {refusal.sentence}"
         yield f"verdict: {verdict(checked)}"
         return
     for leg in checked.verification.verdicts:
@@ -105,7 +108,7 @@ def verdict(checked: Checked) -> str:
     if checked.exit_code is ExitCode.BAD_FILE:
         return "not to be flown as it is"
     if verification is None:
-        return "there is no mission in it to fly"
+        return "refused by the gate" if checked.bad_landings else "there is no mission in it to fly"
     if checked.start_refusal is not None:
         return f"refused by the gate: {checked.start_refusal.sentence}"
     if verification.refusal is not None:
@@ -126,9 +129,9 @@ def check_json(checked: Checked) -> str:
     """One object: findings, legs, verdict."""
     verification = checked.verification
     legs = [] if verification is None else [_leg_json(v) for v in verification.verdicts]
-    problems = []
+    problems = [landing.sentence for landing in checked.bad_landings]
     if verification is not None:
-        problems = [problem.sentence for problem in verification.path.problems]
+        problems += [problem.sentence for problem in verification.path.problems]
         problems += [landing.sentence for landing in verification.bad_landings]
         if verification.beyond_battery is not None:
             problems.append(verification.beyond_battery.sentence)
@@ -186,6 +189,44 @@ def _leg_json(verdict: LegVerdict) -> dict[str, object]:
     }
 
 
+def part_lines(checked: Checked) -> Iterator[str]:
+    """Of a fence or rally points alone: findings, then the verdict."""
+    plan = checked.plan
+    yield f"{plan.source}: {', '.join(held(plan))}, for {checked.autopilot}"
+    for finding in checked.findings:
+        yield from finding_lines(plan, finding)
+    for refusal in checked.bad_landings:
+        yield f"  refused  {refusal.code}: {refusal.sentence}"
+    if plan.rally and checked.home is None:
+        yield "note: not held against the policy, as home is not known: give --home LAT,LON,ALT"
+    yield f"verdict: {_part_verdict(checked)}"
+
+
+def _part_verdict(checked: Checked) -> str:
+    return {
+        ExitCode.DONE: "nothing is wrong with it",
+        ExitCode.BAD_FILE: "not to be uploaded as it is",
+    }.get(checked.exit_code, "refused by the policy")
+
+
+def part_json(checked: Checked) -> str:
+    """The same as one object."""
+    plan = checked.plan
+    document = {
+        "file": plan.source,
+        "autopilot": checked.autopilot,
+        "policy": checked.policy.name,
+        "home": _home_json(checked.home),
+        "zones": len(plan.fence.zones),
+        "rally_points": len(plan.rally),
+        "findings": [finding_json(finding) for finding in checked.findings],
+        "problems": [landing.sentence for landing in checked.bad_landings],
+        "verdict": _part_verdict(checked),
+        "exit_code": int(checked.exit_code),
+    }
+    return json.dumps(document, indent=2, allow_nan=False)
+
+
 # ------------------------------------------------------------------------------ show
 
 
@@ -193,10 +234,7 @@ def print_plan(plan: Plan, route: Route, *, ascii_only: bool) -> None:
     """A table of the items, one of the fence, the reader's notes, and the route as a picture."""
     console = Console(highlight=False)
     title = Text(f"{plan.name}  ({plan.source})", "italic")
-    if plan.items:
-        console.print(title, _items(plan, route), sep="\n")
-    else:
-        console.print(title, Text("no items"), sep="\n")
+    console.print(title, _items(plan, route) if plan.items else Text("no items"), sep="\n")
     if plan.fence.zones:
         fence = Table(title="fence", title_justify="left")
         for heading in ("#", "zone", "shape", "heights above home"):

@@ -37,6 +37,7 @@ from gcs.vehicle.missions.jobs.job import (
     VehicleView,
     refused,
 )
+from gcs.vehicle.missions.jobs.put_fence import PutFence
 from gcs.vehicle.missions.jobs.set_current import SetCurrent, flown_by_mode
 from gcs.vehicle.missions.jobs.start import Start
 from gcs.vehicle.missions.jobs.starting import StartingJob
@@ -45,7 +46,6 @@ from gcs.vehicle.missions.jobs.verify_on_board import Adopt
 from gcs.vehicle.missions.mission_current import MissionTold
 from gcs.vehicle.missions.paths import autopilot_name, first_item, is_placed
 from gcs.vehicle.missions.plans import OnBoard
-from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import Cmd, MissionResult, MissionState, MissionType
 from gcs.wire.messages import (
     MissionAck,
@@ -56,6 +56,8 @@ from gcs.wire.messages import (
 )
 
 KINDS = (MissionType.MISSION, MissionType.FENCE, MissionType.RALLY)
+OF_WORD = {"fence": MissionType.FENCE, "rally": MissionType.RALLY}
+"""By how a word begins."""
 
 PLAN_RECEIVED = "Flight plan received"
 """What ArduCopter tells all of a mission that was uploaded (recorded, 4.7)."""
@@ -133,31 +135,29 @@ class Missions:
         self,
         request_id: int,
         ask: ipc.Ask,
-        telemetry: Telemetry | None,
-        state: State,
-        policy: Policy,
+        view: VehicleView | None,
         now_ns: int,
         plan: ClientPlan | None = None,
         kind: MissionType = MissionType.MISSION,
     ) -> list[Work]:
         """A transfer, or the start of the mission in whatever word.
 
-        `plan` is what a MAVLink client sent, in place of a file; `kind` is which plan it is about.
+        `plan` is what a MAVLink client sent, in place of a file; `kind` is which plan it is about,
+        where the word does not say it.
         """
-        refusal = self._cannot_begin(ask, telemetry, state, policy, plan, kind)
-        if refusal is None and telemetry is None:
-            refusal = Refusal(Code.NO_VEHICLE, "no vehicle is heard")
+        kind = OF_WORD.get(ask.word.partition("_")[0], kind)
+        refusal = self._cannot_begin(ask, view, plan, kind)
         if refusal is not None:
             return [*refused(request_id, ask.word, refusal)]
-        assert telemetry is not None
+        assert view is not None
         asked = Asked(request_id, ask.id, ask.word, self._own, self._timing, self._times)
-        job = self._job_for(ask, asked, plan, kind, state, policy)
+        job = self._job_for(ask, asked, plan, kind, view.state, view.policy)
         if job is None:
             return [AskGate(request_id, StartMission())]
-        if isinstance(job, StartingJob) and autopilot_name(telemetry) == "px4":
+        if isinstance(job, StartingJob) and autopilot_name(view.telemetry) == "px4":
             job.not_before_ns = self._taken_ns + self._times.real_ns(PX4_CHECKS_NS)
         self.job = job
-        return self._follow(job.start(VehicleView(telemetry, state, policy), now_ns))
+        return self._follow(job.start(view, now_ns))
 
     def _job_for(
         self,
@@ -170,15 +170,19 @@ class Missions:
     ) -> Job | None:
         """None: what cannot be flown at all the gate refuses at once."""
         match ask.word:
-            case "mission_upload":
-                if plan is None:
-                    return Upload(asked, ask.path)
+            case "mission_upload" if plan is not None:
                 mission = kind is MissionType.MISSION
                 return ClientUpload(asked, plan) if mission else RelayPlan(asked, plan)
+            case "mission_upload" | "fence_upload" | "rally_upload":
+                return Upload(asked, ask.path, kind)
             case "mission_download":
                 return Download(asked, ask.path)
-            case "mission_clear":
+            case "fence_download" | "rally_download":
+                return Download(asked, ask.path, (kind,))
+            case "mission_clear" | "fence_clear" | "rally_clear":
                 return Clear(asked, KINDS if kind is MissionType.ALL else (kind,))
+            case "fence_put":
+                return PutFence(asked)
             case "mission_set_current":
                 return SetCurrent(asked, ask.item, self._on_board)
             case "mission_check" if self._on_board is not None:
@@ -197,26 +201,25 @@ class Missions:
     def _cannot_begin(
         self,
         ask: ipc.Ask,
-        telemetry: Telemetry | None,
-        state: State,
-        policy: Policy,
+        view: VehicleView | None,
         plan: ClientPlan | None,
         kind: MissionType,
     ) -> Refusal | None:
         """What refuses any job before it begins."""
         if self._left:
             return Refusal(Code.OPERATOR_LOST, "the station is leaving")
-        if state is State.NO_VEHICLE:
+        if view is None or view.state is State.NO_VEHICLE:
             return Refusal(Code.NO_VEHICLE, "no vehicle is heard")
+        telemetry, state, policy = view.telemetry, view.state, view.policy
         if self.job is not None:
             return Refusal(Code.BUSY, f"{self.job.asked.word} is still under way")
         if ask.word == "mission_check":
             return self._cannot_check(state, policy)
-        if ask.word == "mission_upload" and plan is None and not ask.path:
+        if ask.word.endswith("_upload") and plan is None and not ask.path:
             return Refusal(Code.BAD_MISSION, "which file?")
         of_mission = kind in (MissionType.MISSION, MissionType.ALL)
         if ask.word in ("mission_upload", "mission_clear") and of_mission:
-            starting = ask.word == "mission_upload" and telemetry and not is_placed(telemetry)
+            starting = ask.word == "mission_upload" and not is_placed(telemetry)
             if state is State.STALE and not starting:  # else the job waits for it
                 return Refusal(Code.STALE, "the vehicle's position is too old")
             if state is State.FLYING_MISSION or flown_by_mode(telemetry):

@@ -5,7 +5,7 @@ Everything here is about the plan alone; whether its path may be flown is `paths
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gcs.gate.effects import Level
 from gcs.gate.refusal import Refusal
@@ -16,12 +16,13 @@ from gcs.plan.errors import PlanError
 from gcs.plan.formats.reader import read_in_steps
 from gcs.plan.lint import lint
 from gcs.plan.model import Geodetic, Plan
+from gcs.plan.parts import WORDS, apart, held
 from gcs.plan.wire import WireItem, from_wire, to_wire
 from gcs.plan.wire_fence import fence_to_wire, has_heights, rally_to_wire
 from gcs.steps import Steps
 from gcs.vehicle.missions.paths import autopilot_name, on_earth
 from gcs.vehicle.talk.telemetry import Telemetry
-from gcs.wire.ids import Cmd
+from gcs.wire.ids import Cmd, MissionType
 
 MAX_ITEMS = 2_000
 """More would keep the 20 Hz tick waiting while they are checked."""
@@ -55,15 +56,26 @@ class OnBoard:
     """It jumps back: its last stop may be reached many times."""
 
 
-def prepare(path: str, data: bytes, telemetry: Telemetry) -> Steps[Prepared | Refusal]:
-    """Read, lint and place the plan in `data`.
+def prepare(
+    path: str, data: bytes, telemetry: Telemetry, kind: MissionType = MissionType.MISSION
+) -> Steps[Prepared | Refusal]:
+    """Read, lint and place the plan in `data`: all of it, or its fence or rally points alone.
 
-    Raises PlanError for a file that is none, or none that can be flown; refuses where the
-    vehicle's origin or home is not known.
+    Raises PlanError for a file that is none, none that can be flown, or has none of that `kind`;
+    refuses where the vehicle's origin or home is not known.
     """
     written = yield from read_in_steps(path, data, autopilot_name(telemetry))
     yield
-    return (yield from prepare_plan(path, written, telemetry))
+    if kind is MissionType.MISSION:
+        return (yield from prepare_plan(path, written, telemetry))
+    alone, rest = apart(kind, written)
+    if not held(alone):
+        hint = f"it has {', '.join(held(rest)) or 'nothing'}"
+        raise PlanError(path, "", WORDS[kind], "none is in this file", hint=hint)
+    prepared = yield from prepare_plan(path, alone, telemetry)
+    if isinstance(prepared, Refusal) or not held(rest):
+        return prepared
+    return replace(prepared, not_sent=f"; not sent of the file: {', '.join(held(rest))}")
 
 
 def prepare_items(
@@ -84,9 +96,13 @@ def prepare_plan(path: str, written: Plan, telemetry: Telemetry) -> Steps[Prepar
     """Lint and place what was read; as `prepare`."""
     who = autopilot_name(telemetry)
     home = Geodetic(*telemetry.home) if telemetry.home else None
-    if not written.items:
-        hint = "`gcs mission clear` takes a mission off; a fence leaves with a mission only"
-        raise PlanError(path, "", "mission", "has no items", hint=hint)
+    if not held(written):
+        hint = "`gcs mission clear`, `gcs fence clear` and `gcs rally clear` clear what is on board"
+        raise PlanError(path, "", "plan", "has no items, no fence and no rally points", hint=hint)
+    if not written.items and has_heights(written.fence):
+        hint = "`gcs fence put` puts the policy's fence on board, its ceiling as a parameter"
+        what = "has heights, which the zones of a vehicle have not"
+        raise PlanError(path, "", "fence", what, hint=hint)
     if len(written.items) > MAX_ITEMS:
         what = f"has {len(written.items)} items"
         raise PlanError(path, "", "mission", what, f"at most {MAX_ITEMS}")
@@ -101,7 +117,9 @@ def prepare_plan(path: str, written: Plan, telemetry: Telemetry) -> Steps[Prepar
     if isinstance(plan, Refusal):
         return plan
     yield
-    sent, rally = to_wire(plan, who, home), rally_to_wire(plan.rally)
+    sent = to_wire(plan, who, home)
+    amsl_m = home.alt_amsl_m if home is not None and who == "px4" else None
+    rally = rally_to_wire(plan.rally, amsl_m)
     if has_heights(plan.fence):
         remarks.append((Level.WARNING, "fence: is kept by the gate and not sent: it has heights"))
         return Prepared(plan, sent, tuple(remarks), (), rally, "; its fence is not sent")

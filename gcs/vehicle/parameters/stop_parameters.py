@@ -51,6 +51,9 @@ RECORDED: Final[Mapping[str, Mapping[str, float]]] = {
 }
 """By the newest names, of PX4 1.14.3 and ArduCopter 4.7 as the bounds were recorded."""
 
+NO_WORSE_IF_LESS: Final = frozenset({"GUID_TIMEOUT"})
+"""The sooner it stops by itself where setpoints are silent, the shorter the way."""
+
 TYPES: Final = frozenset(int(kind) for kind in ParamType)
 
 
@@ -76,6 +79,8 @@ class StopParameters:
         was = self._values.get(name)
         self._values[name] = value
         if not _differ(value, recorded if was is None else was):
+            return []
+        if name in NO_WORSE_IF_LESS and 0.0 < value < recorded:
             return []
         change = f"{name} is {value:g}" if was is None else f"{name} was {was:g} and is {value:g}"
         if not _differ(value, recorded):

@@ -129,6 +129,13 @@ class FakeStation:
         if ask.word in (
             "mission_download",
             "mission_clear",
+            "fence_upload",
+            "fence_download",
+            "fence_clear",
+            "fence_put",
+            "rally_upload",
+            "rally_download",
+            "rally_clear",
             "mission_set_current",
             "mode",
             "fence",

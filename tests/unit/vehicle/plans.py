@@ -17,5 +17,38 @@ def plan(*items: object) -> bytes:
 
 BOX = json.dumps(samples.box()).encode()
 """Take off, two waypoints within 20 m, land."""
+WEST = round(LON - 0.0005, 7)
+GUARDED = json.dumps(
+    samples.box()
+    | {
+        "geoFence": {
+            "version": 2,
+            "polygons": [
+                {
+                    "inclusion": True,
+                    "version": 1,
+                    "polygon": [
+                        [LAT + 0.0005, LON + 0.0005],
+                        [LAT + 0.0005, WEST],
+                        [LAT - 0.0005, WEST],
+                        [LAT - 0.0005, LON + 0.0005],
+                    ],
+                }
+            ],
+            "circles": [
+                {
+                    "inclusion": False,
+                    "version": 1,
+                    "circle": {"center": [LAT - 0.0003, LON], "radius": 5.0},
+                }
+            ],
+        },
+        "rallyPoints": {
+            "version": 2,
+            "points": [[LAT + 0.0001, LON, 5.0], [LAT, LON + 0.0002, 8.0]],
+        },
+    }
+).encode()
+"""`BOX`, a yard to stay in, a mast to stay out of, and two rally points."""
 FAR = plan(samples.waypoint(1, LAT, LON, 10, command=22), samples.waypoint(2, LAT + 0.01, LON, 10))
 """1.1 km north: outside of the default fence."""

@@ -57,8 +57,8 @@ class Script:
         """The next request; its id is `self.last`."""
         self._requests += 1
         ask = ipc.Ask(100 + self._requests, word, path=path)
-        policy, state = self.policy, self.state
-        work = self.missions.ask(self._requests, ask, self.telemetry, state, policy, self.now_ns)
+        view = None if self.telemetry is None else self.view()
+        work = self.missions.ask(self._requests, ask, view, self.now_ns)
         return self.with_replies(work)
 
     @property
@@ -89,7 +89,7 @@ class Script:
 
     def view(self) -> VehicleView:
         assert self.telemetry is not None
-        return VehicleView(self.telemetry, self.state, DEFAULT)
+        return VehicleView(self.telemetry, self.state, self.policy)
 
     def with_replies(self, work: list[Work]) -> list[Work]:
         done: list[Work] = []

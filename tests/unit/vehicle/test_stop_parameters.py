@@ -46,5 +46,12 @@ def test_one_that_was_never_told_is_compared_with_the_recorded() -> None:
     assert (level, "MPC_ACC_HOR is 1" in text, "with 3" in text) == (Level.WARNING, True, True)
 
 
+def test_a_stop_that_comes_sooner_is_no_news_and_a_later_one_is() -> None:
+    sooner, later = told(ARDUPILOT, "GUID_TIMEOUT", 0.5, 5.0)
+    assert sooner == []
+    ((level, text),) = later
+    assert (level, text.startswith("GUID_TIMEOUT was 0.5 and is 5: ")) == (Level.WARNING, True)
+
+
 def test_of_other_parameters_nothing_is_told() -> None:
     assert told(PX4, "MPC_THR_HOVER", 0.5, 0.6) == [[], []]

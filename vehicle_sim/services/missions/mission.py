@@ -14,6 +14,7 @@ from vehicle_sim.services.missions.plan_items import (
     as_px4_gives_back,
     from_float,
     from_int,
+    place_as_px4_gives_back,
     to_float,
     to_int,
 )
@@ -127,7 +128,8 @@ class MissionServer:
         else:
             return [ack(client, asked.mission_type, self._profile.no_such_item)]
         if not self._profile.home_is_item_0:
-            item = as_px4_gives_back(item)
+            flown = asked.mission_type == MissionType.MISSION
+            item = as_px4_gives_back(item) if flown else place_as_px4_gives_back(item)
         elif asked.mission_type == MissionType.MISSION:
             item = as_ardupilot_gives_back(item, self._vehicle.home)
         if isinstance(asked, m.MissionRequest) and self._profile.float_items:

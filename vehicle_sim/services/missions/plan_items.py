@@ -126,6 +126,12 @@ def as_px4_gives_back(item: PlanItem) -> PlanItem:
     return replace(item, frame=_INT.get(MavFrame(item.frame), item.frame)) if _known(item) else item
 
 
+def place_as_px4_gives_back(item: PlanItem) -> PlanItem:
+    """Of a fence or of rally points (recorded, 1.14.3): whatever it was sent in, as if its height
+    were above the sea, and without autocontinue."""
+    return replace(item, frame=MavFrame.GLOBAL_INT, autocontinue=0)
+
+
 def _through_radians(yaw_deg: float) -> float:
     """In float32, as PX4 keeps it: 225 becomes 224.99998, and -90 becomes 270."""
     yaw_rad = _float32(_float32(yaw_deg) * _RAD_PER_DEG)

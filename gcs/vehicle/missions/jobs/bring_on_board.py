@@ -2,7 +2,8 @@
 
 A mission leaves only if all of it clears the fence; what the vehicle then holds is read back and
 compared in meaning.  The plan's own fence and rally points leave before it, as a PX4 judges a
-mission by the fence that it has; a plan without them leaves those on board as they are.
+mission by the fence that it has; a plan without them leaves those on board as they are.  A plan
+without a mission leaves the one on board as it is.
 
 Where the plan comes from is the subclass's: a file (`upload.py`), or a client
 (`upload.py`).
@@ -12,16 +13,19 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import replace
 
 from gcs.gate.effects import Level, OutcomeKind
 from gcs.gate.inputs import MissionLoaded
 from gcs.gate.refusal import Code, Refusal
 from gcs.plan.legs import FlightPath
+from gcs.plan.model import Fence
+from gcs.plan.parts import are, held
 from gcs.plan.verify import Verification
 from gcs.report import MissionItem
 from gcs.session.effects import Record
 from gcs.session.work import GateInput, Log
-from gcs.vehicle.missions import plans
+from gcs.vehicle.missions.jobs.facts import landings_on_board
 from gcs.vehicle.missions.jobs.job import (
     LEFT,
     NODE,
@@ -30,10 +34,12 @@ from gcs.vehicle.missions.jobs.job import (
     JobWork,
     OnBoardChanged,
     VehicleView,
+    may_not_fence,
 )
 from gcs.vehicle.missions.jobs.prepared import PreparedJob
 from gcs.vehicle.missions.jobs.transfers import BringingJob
-from gcs.vehicle.missions.paths import cleared
+from gcs.vehicle.missions.paths import bad_rally_points, cleared
+from gcs.vehicle.missions.plans import on_board
 from gcs.wire.ids import MissionType
 
 
@@ -43,7 +49,8 @@ class BringMission(PreparedJob, BringingJob):
     def __init__(self, asked: Asked, source: str) -> None:
         super().__init__(asked, source)
         self._flown: FlightPath | None = None
-        """The path, once it has cleared and the request is accepted."""
+        """The path of a mission, once it has cleared."""
+        self._accepted = False
 
     @abstractmethod
     def kept(self) -> list[JobWork]:
@@ -53,6 +60,18 @@ class BringMission(PreparedJob, BringingJob):
         """It clears, and there is this to know about it: lines of the log."""
         return [Log(Level.WARNING, NODE, f"{self.source}: {text}") for text in warnings]
 
+    def placed(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        prepared = self.prepared
+        if prepared.fence and (kept := may_not_fence(view, prepared.fence)):
+            return self.refuse(kept)
+        if prepared.sent:
+            return super().placed(view, now_ns)
+        landings = landings_on_board(prepared.rally, view.telemetry)
+        bad = bad_rally_points(landings, view.policy, view.telemetry) if landings else ()
+        if bad:
+            return self.refuse_for_all(bad[0], bad[1:])
+        return [*self.kept(), *self._bring_parts((), view, now_ns)]
+
     def verified(self, found: Verification, view: VehicleView, now_ns: int) -> list[JobWork]:
         """The verdict; a mission that clears is on its way."""
         answer = cleared(found)
@@ -60,44 +79,49 @@ class BringMission(PreparedJob, BringingJob):
             return self.refuse_path(found, answer)
         work = self.warned(answer.warnings)
         self._flown = found.path
-        work += [
-            *self.kept(),
-            self.accept(answer.evidence),
-            GateInput(MissionLoaded("", 0)),
-            OnBoardChanged(None),
-        ]
+        work += [*self.kept(), *self._bring_parts(answer.evidence, view, now_ns)]
+        return work
+
+    def _bring_parts(
+        self, evidence: tuple[tuple[str, float], ...], view: VehicleView, now_ns: int
+    ) -> list[JobWork]:
+        """Accepted: the fence, the rally points, then the mission; none of them twice in the air,
+        where the fence is on board already."""
+        self._accepted = True
         prepared = self.prepared
-        parts = [
-            (MissionType.FENCE, prepared.fence),
+        work: list[JobWork] = [self.accept(evidence)]
+        if prepared.sent:
+            work += [GateInput(MissionLoaded("", 0)), OnBoardChanged(None)]
+        stays = view.in_air and bool(view.fence)  # `may_not_fence`: it is this very one
+        plans = [
+            (MissionType.FENCE, () if stays else prepared.fence),
             (MissionType.RALLY, prepared.rally),
             (MissionType.MISSION, prepared.sent),
         ]
-        return work + self.bring([part for part in parts if part[1]], view, now_ns)
+        left = [plan for plan in plans if plan[1]]
+        return work + (self.bring(left, view, now_ns) if left else self.on_board(view, now_ns))
 
-    def on_board(self) -> list[JobWork]:
-        assert self._flown is not None
+    def on_board(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         prepared = self.prepared
         plan = prepared.plan
-        points = tuple(dict.fromkeys(end for leg in self._flown.segments for end in leg))
-        work: list[JobWork] = [
-            OnBoardChanged(plans.on_board(plan, prepared.sent)),
-            Record(MissionItem(plan.name, points)),
-            GateInput(MissionLoaded(plan.name, len(plan.items))),
-        ]
-        parts = [f"{len(plan.items)} items"]
-        if prepared.fence:
-            parts.append(f"a fence of {len(plan.fence.zones)} zones")
-        if prepared.rally:
-            parts.append(f"{len(prepared.rally)} rally points")
-        text = f"{', '.join(parts)} are on board, read back equal{prepared.not_sent}"
+        work: list[JobWork] = []
+        if self._flown is not None:
+            points = tuple(dict.fromkeys(end for leg in self._flown.segments for end in leg))
+            work += [
+                OnBoardChanged(on_board(plan, prepared.sent)),
+                Record(MissionItem(plan.name, points)),
+                GateInput(MissionLoaded(plan.name, len(plan.items))),
+            ]
+        sent = plan if prepared.fence else replace(plan, fence=Fence())
+        text = f"{are(held(sent))} on board, read back equal{prepared.not_sent}"
         return work + self.end(OutcomeKind.COMPLETE, None, text)
 
     def leave(self) -> list[JobWork]:
-        if self._flown is None:  # it has no verdict yet
+        if not self._accepted:  # it has no verdict yet
             return self.refuse(Refusal(Code.OPERATOR_LOST, LEFT))
         return super().leave()
 
     def stop(self) -> list[JobWork]:
-        if self._flown is None:
+        if not self._accepted:
             return self.refuse(Refusal(Code.OPERATOR, STOPPED))
         return super().stop()

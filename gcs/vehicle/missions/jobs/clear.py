@@ -1,13 +1,22 @@
-"""Clear: the mission on board is taken off; or, for a client, its fence or rally points."""
+"""Clear: the mission, fence or rally points on board are taken off; a client may ask for all."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.inputs import MissionLoaded
 from gcs.protocol.mission import MissionClear
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.work import GateInput
-from gcs.vehicle.missions.jobs.job import Asked, Job, JobWork, OnBoardChanged, VehicleView
+from gcs.vehicle.missions.jobs.job import (
+    Asked,
+    Job,
+    JobWork,
+    OnBoardChanged,
+    VehicleView,
+    may_not_fence,
+)
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
 
@@ -27,6 +36,8 @@ class Clear(Job):
         self._left = list(kinds)
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        if self.asked.word == "fence_clear" and (kept := may_not_fence(view, ())):
+            return self.refuse(kept)
         return [self.accept(), *self._clear(view, now_ns)]
 
     def _clear(self, view: VehicleView, now_ns: int) -> list[JobWork]:
@@ -41,8 +52,16 @@ class Clear(Job):
             work += [OnBoardChanged(None), GateInput(MissionLoaded("", 0))]
         if self._left:
             return work + self._clear(view, now_ns)
-        text = ", ".join(GONE[kind] for kind in self._kinds)
-        return work + self.end(OutcomeKind.COMPLETE, None, text)
+        told = ", ".join(GONE[kind] for kind in self._kinds)
+        stays = self._stays(view) if self._kinds == (MissionType.MISSION,) else ()
+        return work + self.end(OutcomeKind.COMPLETE, None, "; ".join((told, *stays)))
+
+    def _stays(self, view: VehicleView) -> Iterator[str]:
+        """What else is on board, and what clears it."""
+        for name, items in (("fence stays", view.fence), ("rally points stay", view.rally)):
+            if items != ():
+                doubt = "" if items else ", if there is any"
+                yield f"its {name}{doubt} (`gcs {name.split()[0]} clear`)"
 
     def file(self, news: FileRead | FileWritten, view: VehicleView, now_ns: int) -> list[JobWork]:
         return []

@@ -16,6 +16,7 @@ from gcs.plan.legs import FlightSettings, LandingPlace
 from gcs.plan.model import AutopilotName
 from gcs.plan.settings import USUAL
 from gcs.plan.wire import WireItem
+from gcs.plan.wire_fence import is_above_home
 from gcs.protocol.effects import Address, Heard, Send, TransferDone, TransferFailed, Wake
 from gcs.protocol.mission import MissionDownload
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
@@ -23,7 +24,7 @@ from gcs.protocol.transfer import Timing
 from gcs.session.speedup_waits import Times
 from gcs.vehicle.missions.paths import autopilot_name
 from gcs.vehicle.talk.telemetry import Telemetry
-from gcs.wire.ids import MavFrame, MissionType
+from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt, ParamError, ParamValue
 
 _KM = 1000.0
@@ -208,13 +209,11 @@ def landings_on_board(
         return ()
     projection = Projection(telemetry.origin, telemetry.autopilot.name)
     home_down_m = telemetry.home_ned[2]
+    home_alt_amsl_m = telemetry.origin.alt_amsl_m - home_down_m
     found = []
     for number, item in enumerate(items, start=1):
         north_m, east_m = projection.north_east(item.x * 1e-7, item.y * 1e-7)
-        relative = item.frame in (
-            MavFrame.GLOBAL_RELATIVE_ALT,
-            MavFrame.GLOBAL_RELATIVE_ALT_INT,
-        )
+        relative = is_above_home(item, home_alt_amsl_m)
         down_m = home_down_m - item.z if relative else telemetry.origin.alt_amsl_m - item.z
         title = f"{name} {number}"
         if autopilot_name(telemetry) == "px4":

@@ -55,7 +55,7 @@ class RelayPlan(BringingJob):
         log = Log(LogLevel.WARNING, NODE, f"{self._plan.source}: {text}")
         return [log, TellOperator(self.asked.request_id, ipc.Trouble(text))]
 
-    def on_board(self) -> list[JobWork]:
+    def on_board(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         name, many = NAMES[self._plan.kind], len(self._plan.items)
         text = f"the {name} of {many} items is on board, read back equal"
         return self.end(OutcomeKind.COMPLETE, None, text)

@@ -3,8 +3,9 @@
 Upload    READING -> LEARNING -> VERIFYING -> (verdict) -> UPLOADING -> READING BACK -> on board;
           the last two for the fence and the rally points of the plan first
 Start     LEARNING -> READING BACK -> VERIFYING -> AT THE FIRST ITEM -> (verdict: the gate's)
-Download  (verdict) -> DOWNLOADING -> WRITING -> done
+Download  (verdict) -> DOWNLOADING, each kind of plan -> WRITING -> done
 Clear     (verdict) -> CLEARING -> done
+PutFence  (verdict) -> UPLOADING -> READING BACK -> SETTING, each parameter -> done
 SetCurrent  (verdict) -> TOLD -> done
 """
 
@@ -20,6 +21,8 @@ from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
+from gcs.plan import compare
+from gcs.plan.wire import WireItem
 from gcs.protocol.effects import (
     Address,
     Cancel,
@@ -37,6 +40,7 @@ from gcs.protocol.transfer import Timing
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
 from gcs.session.work import GiveVerdict, Log, TellOperator, Work
+from gcs.vehicle.missions.paths import autopilot_name
 from gcs.vehicle.missions.plans import OnBoard
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.ids import MissionType
@@ -56,6 +60,14 @@ class VehicleView:
     telemetry: Telemetry
     state: State
     policy: Policy
+    fence: tuple[WireItem, ...] | None = None
+    """What is on board, as it was read last; None: it is not known."""
+    rally: tuple[WireItem, ...] | None = None
+
+    @property
+    def in_air(self) -> bool:
+        """It flies, or it may."""
+        return self.state is not State.GROUNDED and self.telemetry.armed is not False
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,6 +227,19 @@ class Job(ABC):
             Outcome(self.asked.request_id, kind, code, sentence),
             Log(level, NODE, f"{self.asked.word}: {kind.value}: {sentence}"),
         ]
+
+
+def may_not_fence(view: VehicleView, becomes: tuple[WireItem, ...]) -> Refusal | None:
+    """Why the vehicle's fence must not become this one: in the air it is what is left when the link
+    is down.  None on the ground, and where the vehicle has none or this very one."""
+    if not view.in_air or view.fence == ():
+        return None
+    if view.fence is not None and not compare.same_meaning(
+        becomes, view.fence, autopilot_name(view.telemetry)
+    ):
+        return None
+    text = "the vehicle's own fence is neither cleared nor replaced in the air: land first"
+    return Refusal(Code.IN_AIR, text)
 
 
 LEFT = "the station left before it was done"

@@ -116,7 +116,11 @@ class PreparedJob(VerifiedJob):
         work: list[JobWork] = [
             Log(level, NODE, f"{self.source}: {text}") for level, text in prepared.remarks
         ]
-        return work + self.learn(view, now_ns)
+        return work + self.placed(view, now_ns)
+
+    def placed(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        """The plan is `prepared`: what shapes its flight is learnt next."""
+        return self.learn(view, now_ns)
 
     def learnt(self, view: VehicleView, now_ns: int) -> list[JobWork]:
         return self.verify(self.prepared.plan, view, now_ns)

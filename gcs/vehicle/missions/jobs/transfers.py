@@ -30,8 +30,8 @@ class BringingJob(Job):
         """What the vehicle answered to the last item, where it was no ACCEPTED."""
 
     @abstractmethod
-    def on_board(self) -> list[JobWork]:
-        """All of it was read back equal: the end."""
+    def on_board(self, view: VehicleView, now_ns: int) -> list[JobWork]:
+        """All of it was read back equal: the end, or what comes next."""
 
     def bring(
         self,
@@ -94,4 +94,4 @@ class BringingJob(Job):
             return self.end(OutcomeKind.ABORTED, Code.VEHICLE_REFUSED, text)
         self._refused = ""
         del self._left[0]
-        return self._bring(view, now_ns) if self._left else self.on_board()
+        return self._bring(view, now_ns) if self._left else self.on_board(view, now_ns)

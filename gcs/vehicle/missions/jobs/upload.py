@@ -24,6 +24,7 @@ from gcs.vehicle.missions.jobs.job import Asked, JobWork, VehicleView
 from gcs.vehicle.missions.jobs.prepared import MOST_FINDINGS
 from gcs.vehicle.missions.paths import autopilot_name, first_item
 from gcs.vehicle.missions.plans import prepare, prepare_items
+from gcs.wire.ids import MissionType
 
 SMALL_BYTES = 20_000
 """A file that is no larger is read, checked and placed in one turn."""
@@ -33,11 +34,13 @@ SMALL_ITEMS = 50
 
 
 class Upload(BringMission):
-    """A plan file, verified whole, brought on board and read back."""
+    """A plan file, verified whole, brought on board and read back: all of it, or its fence or rally
+    points alone."""
 
-    def __init__(self, asked: Asked, path: str) -> None:
+    def __init__(self, asked: Asked, path: str, kind: MissionType = MissionType.MISSION) -> None:
         super().__init__(asked, path)
         self._path = path
+        self._kind = kind
         self._data = b""
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
@@ -49,7 +52,7 @@ class Upload(BringMission):
         if news.data is None:
             return self.bad_file(f"{news.path}: {news.error}")
         self._data = news.data
-        steps = prepare(news.path, news.data, view.telemetry)
+        steps = prepare(news.path, news.data, view.telemetry, self._kind)
         return self.prepare_with(steps, len(news.data) <= SMALL_BYTES, view, now_ns)
 
     def bad_plan(self, error: PlanError) -> list[JobWork]:

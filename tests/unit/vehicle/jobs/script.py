@@ -17,7 +17,8 @@ from gcs.gate.policy.parse import DEFAULT
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
-from gcs.plan.item_messages import message_of
+from gcs.plan.item_messages import item_of, message_of
+from gcs.plan.wire import WireItem
 from gcs.protocol.autopilot import PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
 from gcs.protocol.transfer import SPEC_TIMING
@@ -42,6 +43,7 @@ from gcs.wire.messages import (
     MissionSetCurrent,
     ParamError,
     ParamRequestRead,
+    ParamSet,
     ParamValue,
 )
 from tests.unit.station.vehicles import HOME, SECOND_NS, vehicle
@@ -105,7 +107,11 @@ class Board:
         self.refuses: MissionResult | None = None
         self.lists: dict[int, list[MissionItemInt]] = {1: [], 2: []}
         """Its fence and its rally points."""
+        self.silent_lists: set[int] = set()
+        """Of these kinds of plans it is asked in vain."""
         self.parameters = dict(PARAMETERS)
+        self.stubborn: set[str] = set()
+        """Parameters that stay as they are."""
         self._coming: list[MissionItemInt] = []
         self._count = 0
 
@@ -124,6 +130,12 @@ class Board:
                 return [self._request(0, kind)]
             case MissionItemInt():
                 return self._item(message)
+            case MissionRequestList(mission_type=kind) if kind in self.silent_lists:
+                return []
+            case ParamSet(param_id=name, param_value=value) if name in self.parameters:
+                if name not in self.stubborn:
+                    self.parameters[name] = value
+                return [self._parameter(name)]
             case MissionRequestList(mission_type=kind):
                 return [MissionCount(count=len(self._list(kind)), mission_type=kind, **self._to())]
             case MissionRequestInt(seq=seq, mission_type=kind):
@@ -189,11 +201,15 @@ class JobScript:
         self.state, self.policy = state, policy
         self.work: list[JobWork] = []
         self._on_air: deque[Message] = deque()
+        self.on_board: tuple[tuple[WireItem, ...] | None, tuple[WireItem, ...] | None]
+        lists = (tuple(map(item_of, board.lists[kind])) for kind in (1, 2))
+        self.on_board = (next(lists), next(lists))
         self._take(job.start(self.view, self.now_ns))
 
     @property
     def view(self) -> VehicleView:
-        return VehicleView(self.telemetry, self.state, self.policy)
+        """The fence and the rally points on board are known as they were before the job."""
+        return VehicleView(self.telemetry, self.state, self.policy, *self.on_board)
 
     # ------------------------------------------------------------------------------ inputs
 

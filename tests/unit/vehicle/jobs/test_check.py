@@ -13,6 +13,7 @@ from gcs.protocol.effects import Address
 from gcs.session.speedup_waits import Times
 from gcs.session.work import AskGate, GiveVerdict
 from gcs.vehicle.missions.jobs.check import Check, CheckUnknown
+from gcs.vehicle.missions.jobs.job import VehicleView
 from gcs.vehicle.missions.missions import Missions
 from gcs.wire.messages import MissionSetCurrent
 from tests.unit.plan import samples
@@ -83,7 +84,7 @@ def test_a_stop_ends_it() -> None:
 def test_it_is_for_the_ground(state: State, code: Code) -> None:
     missions = Missions(Address(255, 190), Times())
     ask = ipc.Ask(70, "mission_check")
-    work = missions.ask(7, ask, placed(), state, DEFAULT, START_NS)
+    work = missions.ask(7, ask, VehicleView(placed(), state, DEFAULT), START_NS)
     (refusal,) = [item.refusal for item in work if isinstance(item, GiveVerdict)]
     assert refusal is not None
     assert refusal.code is code

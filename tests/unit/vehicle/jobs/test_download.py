@@ -7,14 +7,18 @@ import pytest
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.refusal import Code
 from gcs.plan.formats.reader import read
+from gcs.plan.model import Geodetic
+from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.effects import WriteFile
 from gcs.session.inputs import FileRead
 from gcs.vehicle.missions.jobs.download import Download
-from gcs.wire.ids import MissionResult
+from gcs.vehicle.missions.jobs.upload import Upload
+from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import MissionRequestInt, MissionRequestList
 from tests.unit.station import told
+from tests.unit.station.vehicles import HOME
 from tests.unit.vehicle.jobs.script import Board, JobScript, asked, brought, placed
-from tests.unit.vehicle.plans import BOX
+from tests.unit.vehicle.plans import BOX, GUARDED
 
 COMPLETE = (OutcomeKind.COMPLETE, None)
 ABORTED = OutcomeKind.ABORTED
@@ -38,13 +42,13 @@ def test_without_a_file_the_items_are_counted() -> None:
 def test_a_vehicle_without_a_mission_has_none() -> None:
     script = download(Board())
     assert script.outcome == COMPLETE
-    assert script.sentence == "0 items are on board"
+    assert script.sentence == "no mission, fence or rally is on board"
 
 
 def test_a_vehicle_without_a_mission_gives_no_file_and_that_is_said() -> None:
     script = download(Board(), "out.plan")
     assert script.outcome == (ABORTED, Code.NO_MISSION)
-    assert script.sentence == "no mission is on board: out.plan was not written"
+    assert script.sentence == "no mission, fence or rally is on board: out.plan was not written"
     assert script.of(WriteFile) == []
 
 
@@ -59,7 +63,7 @@ def test_the_file_is_the_mission_that_is_on_board(path: str) -> None:
     assert here == there
     assert not script.job.over
     assert script.written().outcome == COMPLETE
-    assert script.sentence == f"written to {path}"
+    assert script.sentence.startswith(f"written to {path}: 4 items")
 
 
 def test_while_the_file_is_written_no_time_runs_out() -> None:
@@ -107,6 +111,62 @@ def test_what_the_vehicle_refuses_ends_as_refused() -> None:
 
 def test_a_station_that_leaves_while_the_file_is_written_has_not_finished() -> None:
     assert download(board(), "out.plan").leave().outcome == (ABORTED, Code.OPERATOR_LOST)
+
+
+def fenced(board: Board) -> Board:
+    """With the fence and the rally points of `GUARDED`."""
+    assert JobScript(Upload(asked("mission_upload"), "a.plan"), board).read(GUARDED).outcome
+    return board
+
+
+@pytest.mark.parametrize(("autopilot", "path"), [(PX4, "o.plan"), (ARDUPILOT, "o.waypoints")])
+def test_fence_rally_points_and_home_come_with_it(autopilot: Autopilot, path: str) -> None:
+    telemetry = placed(autopilot)
+    there = JobScript(Upload(asked("mission_upload"), "a.plan"), Board(), telemetry).read(GUARDED)
+    assert there.outcome == COMPLETE
+    script = JobScript(Download(asked("mission_download"), path), there.board, telemetry)
+    (write,) = script.of(WriteFile)
+    back, sent = read(path, write.data, "ardupilot"), read("a.plan", GUARDED)
+    assert [zone.shape for zone in back.fence.zones] == [zone.shape for zone in sent.fence.zones]
+    assert [zone.inclusion for zone in back.fence.zones] == [True, False]
+    there_and_here = [
+        [(round(p.lat_deg, 7), round(p.lon_deg, 7), p.alt_above_home_m) for p in plan.rally]
+        for plan in (sent, back)
+    ]
+    assert there_and_here[0] == there_and_here[1]
+    assert back.home == Geodetic(HOME.lat_deg, HOME.lon_deg, HOME.alt_amsl_m)
+    kept = script.written().sentence
+    assert kept == f"written to {path}: 4 items, a fence of 2 zones, 2 rally points"
+
+
+def test_what_the_format_cannot_keep_is_named() -> None:
+    script = JobScript(Download(asked("mission_download"), "o.waypoints"), board()).written()
+    assert "4 items; home is not kept by this format" in script.sentence
+
+
+@pytest.mark.parametrize(
+    ("word", "kind", "told"),
+    [
+        ("fence_download", MissionType.FENCE, "a fence of 2 zones"),
+        ("rally_download", MissionType.RALLY, "2 rally points"),
+    ],
+)
+def test_one_kind_alone(word: str, kind: MissionType, told: str) -> None:
+    board_ = fenced(Board())
+    script = JobScript(Download(asked(word), "o.plan", (kind,)), board_)
+    assert {each.mission_type for each in script.sent(MissionRequestList)} == {kind}
+    assert script.written().sentence == f"written to o.plan: {told}"
+    (write,) = script.of(WriteFile)
+    assert read("o.plan", write.data).items == ()
+
+
+def test_a_fence_that_cannot_be_read_is_not_taken_for_none() -> None:
+    silent = Board(brought(BOX, placed()))
+    silent.silent_lists = {MissionType.FENCE}
+    script = download(silent, "out.plan").run(60.0)
+    assert script.outcome == (ABORTED, Code.NO_ANSWER)
+    assert "its fence could not be read" in script.sentence
+    assert script.of(WriteFile) == []
 
 
 def test_what_is_on_board_stays_as_it_is_known() -> None:

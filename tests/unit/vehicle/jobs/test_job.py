@@ -46,7 +46,9 @@ def test_a_refusal_is_a_verdict_and_a_warning() -> None:
 
 def test_a_good_end_is_a_line_and_a_bad_one_a_warning() -> None:
     good = JobScript(Download(asked("mission_download"), ""), Board())
-    assert logged(good) == [(Level.INFO, "mission_download: complete: 0 items are on board")]
+    assert logged(good) == [
+        (Level.INFO, "mission_download: complete: no mission, fence or rally is on board")
+    ]
     bad = JobScript(Download(asked("mission_download"), ""), silent()).leave()
     ((level, text),) = logged(bad)
     assert level is Level.WARNING

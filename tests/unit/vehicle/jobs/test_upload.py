@@ -20,7 +20,7 @@ from gcs.session.work import GateInput, GiveVerdict, Log
 from gcs.vehicle.missions.jobs.upload import Upload
 from gcs.vehicle.missions.jobs.verified import PAUSE_NS
 from gcs.vehicle.talk.telemetry import Telemetry
-from gcs.wire.ids import MissionResult
+from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import (
     Message,
     MissionAck,
@@ -33,8 +33,15 @@ from gcs.wire.messages import (
 from tests.unit.plan import samples
 from tests.unit.station import told
 from tests.unit.station.vehicles import SECOND_NS
-from tests.unit.vehicle.jobs.script import START_NS, Board, JobScript, asked, placed
-from tests.unit.vehicle.plans import BOX, FAR, LAT, LON, plan
+from tests.unit.vehicle.jobs.script import (
+    START_NS,
+    Board,
+    JobScript,
+    asked,
+    brought,
+    placed,
+)
+from tests.unit.vehicle.plans import BOX, FAR, GUARDED, LAT, LON, plan
 
 COMPLETE = (OutcomeKind.COMPLETE, None)
 BAD_FILE = 4
@@ -115,7 +122,7 @@ def test_progress_is_shown_item_by_item() -> None:
         (b"", "a.plan"),
         (b"{}", "a.plan"),
         (BOX[:100], "a.plan"),
-        (plan(), "has no items"),
+        (plan(), "has no items, no fence and no rally points"),
         (plan(samples.waypoint(1, 99.0, 8.5, 10)), "a.plan"),
     ],
 )
@@ -208,7 +215,7 @@ def test_a_plan_s_fence_and_rally_points_are_brought_on_board_before_its_mission
     assert [count.mission_type for count in script.sent(MissionCount)] == [1, 2, 0]
     fence, rally = script.board.lists[1], script.board.lists[2]
     assert [(item.command, item.param1) for item in fence] == [(5004, 10.0)]
-    assert [(item.command, item.z) for item in rally] == [(5100, 5.0)]
+    assert [(item.command, item.frame, item.z) for item in rally] == [(5100, 0, 493.0)]
 
 
 def test_a_plan_s_rally_point_in_an_exclusion_zone_is_refused_by_its_number() -> None:
@@ -245,6 +252,113 @@ up_m = [0, 40]
     assert script.outcome == COMPLETE
     assert [count.mission_type for count in script.sent(MissionCount)] == [0]
     assert any("fence: is kept by the gate and not sent" in log.text for log in script.of(Log))
+
+
+# ------------------------------------------------------------------------- parts of a plan alone
+
+
+def upload_part(word: str, kind: MissionType, board: Board, state: State) -> JobScript:
+    return JobScript(Upload(asked(word), "a.plan", kind), board, state=state)
+
+
+def without_mission() -> bytes:
+    document = json.loads(GUARDED)
+    document["mission"]["items"] = []
+    return json.dumps(document).encode()
+
+
+def test_a_plan_without_a_mission_leaves_the_one_on_board_as_it_is() -> None:
+    board = Board(brought(BOX, placed()))
+    script = upload(board).read(without_mission())
+    assert script.outcome == COMPLETE
+    assert [count.mission_type for count in script.sent(MissionCount)] == [1, 2]
+    assert script.sentence == "a fence of 2 zones, 2 rally points are on board, read back equal"
+    assert (script.kept, script.loaded, len(board.items)) == ([], [], 4)
+
+
+@pytest.mark.parametrize(
+    ("word", "kind", "told"),
+    [
+        (
+            "fence_upload",
+            MissionType.FENCE,
+            "a fence of 2 zones is on board, read back equal; "
+            "not sent of the file: 4 items, 2 rally points",
+        ),
+        (
+            "rally_upload",
+            MissionType.RALLY,
+            "2 rally points are on board, read back equal; "
+            "not sent of the file: 4 items, a fence of 2 zones",
+        ),
+    ],
+)
+def test_one_part_of_a_file_is_sent_and_the_others_are_named(
+    word: str, kind: MissionType, told: str
+) -> None:
+    script = upload_part(word, kind, Board(), State.GROUNDED).read(GUARDED)
+    assert script.outcome == COMPLETE
+    assert [count.mission_type for count in script.sent(MissionCount)] == [kind]
+    assert script.sentence == told
+
+
+def test_a_file_without_that_part_is_refused_and_says_what_it_has() -> None:
+    script = upload_part("fence_upload", MissionType.FENCE, Board(), State.GROUNDED).read(BOX)
+    assert script.refused is Code.BAD_MISSION
+    (trouble,) = told.troubles(script.work)
+    assert (trouble.exit_code, trouble.hint) == (BAD_FILE, "it has 4 items")
+
+
+def test_rally_points_alone_are_judged_by_the_policy() -> None:
+    document = json.loads(without_mission())
+    document["rallyPoints"]["points"].append([LAT + 0.01, LON, 5.0])
+    data = json.dumps(document).encode()
+    script = upload_part("rally_upload", MissionType.RALLY, Board(), State.GROUNDED).read(data)
+    assert script.refused in (Code.TOO_FAR, Code.OUTSIDE_FENCE, Code.LEG_LEAVES_FENCE)
+    assert script.sentence.startswith("rally point 3: ")
+    assert script.board.heard == []
+
+
+FLIES = State.HOVERING
+
+
+def flying(data: bytes, board: Board, word: str = "mission_upload") -> JobScript:
+    kind = MissionType.FENCE if word == "fence_upload" else MissionType.MISSION
+    telemetry = placed()
+    telemetry.armed = True
+    job = Upload(asked(word), "a.plan", kind)
+    return JobScript(job, board, telemetry, FLIES).read(data)
+
+
+def test_in_the_air_a_fence_is_not_replaced_by_any_word() -> None:
+    board = Board()
+    upload(board).read(with_rally())
+    for word in ("mission_upload", "fence_upload"):
+        script = flying(GUARDED, board, word)
+        assert script.refused is Code.IN_AIR
+        assert script.sent(MissionCount) == []
+
+
+def test_in_the_air_the_same_fence_stays_and_the_mission_is_sent() -> None:
+    board = Board()
+    upload(board).read(GUARDED)
+    script = flying(GUARDED, board)
+    assert script.outcome == COMPLETE
+    assert [count.mission_type for count in script.sent(MissionCount)] == [2, 0]
+    assert script.sentence.startswith("4 items, a fence of 2 zones, 2 rally points are on board")
+
+
+def test_in_the_air_a_vehicle_without_a_fence_gets_one() -> None:
+    assert flying(GUARDED, Board(), "fence_upload").outcome == COMPLETE
+
+
+def test_in_the_air_a_fence_that_is_not_known_stays() -> None:
+    telemetry = placed()
+    telemetry.armed = True
+    job = Upload(asked("fence_upload"), "a.plan", MissionType.FENCE)
+    script = JobScript(job, Board(), telemetry, FLIES)
+    script.on_board = (None, None)
+    assert script.read(GUARDED).refused is Code.IN_AIR
 
 
 @pytest.mark.slow
