@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 POLICIES = ("default", "lab", "demo")
-SUFFIXES = (".toml", ".plan", ".waypoints", ".txt")
+SUFFIXES = (".toml", ".plan", ".waypoints", ".txt", ".csv", ".kml", ".gpx")
 
 
 class MissionNotFoundError(Exception):
