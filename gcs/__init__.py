@@ -10,6 +10,7 @@ As a Python library it flies through the same station process as the command lin
         station.goto(3, 0, 2)
         station.land()
 
+`async with gcs.aconnect(...)` is the same for asyncio.
 `gcs.connect` joins the station that has the link open already, if one runs; what it returns is in
 `gcs/operator/station.py`, what is raised in `gcs/operator/failures.py`.
 `gcs.columns(path, "LOCAL_POSITION_NED")` gives the messages of one kind of a finished .mcap or
@@ -19,33 +20,45 @@ As a Python library it flies through the same station process as the command lin
 TYPE_CHECKING = False  # that of `typing`, which takes its time to load
 if TYPE_CHECKING:
     from gcs.logfile.columns.read import columns
+    from gcs.operator.async_station import AsyncOperation, AsyncStation, aconnect
     from gcs.operator.connect import connect
     from gcs.operator.failures import (
+        BadArgument,
         CannotConnect,
         Disconnected,
         GcsError,
         NotCompleted,
+        NotHeard,
         Refused,
         StationDiffers,
     )
-    from gcs.operator.station import Operation, Station
+    from gcs.operator.operation import Operation
+    from gcs.operator.station import Station
 
 __version__ = "0.1.0"
 _HOME = {
+    "AsyncOperation": "gcs.operator.async_station",
+    "AsyncStation": "gcs.operator.async_station",
+    "aconnect": "gcs.operator.async_station",
     "columns": "gcs.logfile.columns.read",
     "connect": "gcs.operator.connect",
-    "Operation": "gcs.operator.station",
+    "Operation": "gcs.operator.operation",
     "Station": "gcs.operator.station",
 }
 __all__ = [
+    "AsyncOperation",
+    "AsyncStation",
+    "BadArgument",
     "CannotConnect",
     "Disconnected",
     "GcsError",
     "NotCompleted",
+    "NotHeard",
     "Operation",
     "Refused",
     "Station",
     "StationDiffers",
+    "aconnect",
     "columns",
     "connect",
 ]

@@ -53,11 +53,13 @@ class Circle(msgspec.Struct, frozen=True, omit_defaults=True):
 class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_defaults=True):
     """One request.  `id` is the client's own number and comes back in every answer.
 
-    `word` is one of: control arm disarm takeoff goto orbit land rtl hold abort resume photo mode
-    fence mission_start mission_upload mission_download mission_clear mission_set_current
+    `word` is one of: control arm disarm takeoff goto heading orbit land rtl hold abort resume photo
+    mode fence mission_start mission_upload mission_download mission_clear mission_set_current
     mission_check fence_upload fence_download fence_clear fence_put rally_upload rally_download
     rally_clear param_list param_get param_set file_read file_list file_crc log_list log_read
     stream_begin stream_end station_take station_release station_end.
+    A goto has one of `goal_enu`, `move_enu`, `move_body` and `goal_global`.  Where it leads is
+    settled when it arrives, by what the vehicle has reported then: the verdict's `goal_enu` tells.
     Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
     for every one that flies, and the first of them answers.
     """
@@ -65,6 +67,10 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     id: int
     word: str
     goal_enu: Maybe3 | None = None  # goto: metres east, north, up of the local origin
+    move_enu: Maybe3 | None = None  # goto: metres east, north, up of where the vehicle is
+    move_body: Maybe3 | None = None  # goto: metres forward, right, up of it, as its nose points
+    goal_global: Maybe3 | None = None  # goto: latitude, longitude in degrees; metres above home
+    amsl: bool = False  # goal_global: metres above mean sea level instead
     yaw_deg: float | None = None
     up_m: float | None = None  # takeoff: metres above the take-off point
     mode: str = ""  # mode: the autopilot's own name; mission_check: wait until it is shown
@@ -275,6 +281,7 @@ class EndingEvent(msgspec.Struct, frozen=True, tag="ending", tag_field="type"):
     ended: str  # complete | aborted | superseded | timed out | taken over
     code: str = ""
     sentence: str = ""
+    numbers: dict[str, float | None] = {}  # photo: `picture`, the vehicle's number of it
 
 
 class Operation(msgspec.Struct, frozen=True, tag="operation", tag_field="type"):

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final, TypeAlias
 
 from gcs.frames import finite_or_nan, heading_rad, ned_from_enu
 from gcs.gate import requests as gate
-from gcs.ipc import Ask
+from gcs.ipc import Ask, Circle, Maybe3
 
 
 class ArgumentKind(Enum):
@@ -34,8 +34,8 @@ class ArgumentKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """`name` is what the help shows; for a FLAG it is what must be typed.  `field` is the one of
-    `Ask` that it goes into, where a word has no `build`."""
+    """`name` is what the help shows; for a FLAG it is what must be typed, anywhere.  `field` is the
+    one of `Ask` that it goes into, where a word has no `build`."""
 
     name: str
     kind: ArgumentKind
@@ -163,6 +163,28 @@ def _goto(east: float, north: float, up: float, yaw_deg: float | None = None) ->
     return SendRequests((Ask(0, "goto", goal_enu=(east, north, up), yaw_deg=yaw_deg),))
 
 
+def _goto_global(
+    lat: float, lon: float, up: float, amsl: bool, yaw_deg: float | None = None
+) -> Action:
+    goal = (lat, lon, up)
+    return SendRequests((Ask(0, "goto", goal_global=goal, amsl=amsl, yaw_deg=yaw_deg),))
+
+
+def _move(east: float, north: float, up: float, yaw_deg: float | None = None) -> Action:
+    return SendRequests((Ask(0, "goto", move_enu=(east, north, up), yaw_deg=yaw_deg),))
+
+
+def _forward(forward: float, right: float = 0.0, up: float = 0.0) -> Action:
+    return SendRequests((Ask(0, "goto", move_body=(forward, right, up)),))
+
+
+def _orbit(radius: float, speed: float, turns: float = 1.0, *centre: float) -> Action:
+    if centre and len(centre) != 3:
+        raise BadAskError("the centre is EAST NORTH UP, or nothing: where the vehicle is")
+    circle = Circle((centre[0], centre[1], centre[2]) if centre else None, radius, speed, turns)
+    return SendRequests((Ask(0, "orbit", orbit=circle),))
+
+
 def _velocity(east: float, north: float, up: float, seconds: float = 1.0) -> Action:
     return FlyVelocity((east, north, up), seconds)
 
@@ -171,9 +193,18 @@ def _mission_fly(path: str) -> Action:
     return SendRequests((Ask(0, "mission_upload", path=path), Ask(0, "mission_start")))
 
 
+def goals_of(ask: Ask) -> dict[str, Maybe3]:
+    """Where it is to lead, by the name of the field that says so; of a go-to exactly one."""
+    fields = ("goal_enu", "move_enu", "move_body", "goal_global")
+    given = {name: getattr(ask, name) for name in fields}
+    return {name: goal for name, goal in given.items() if goal is not None}
+
+
 def _to_a_goal(ask: Ask) -> gate.GoTo:
-    if ask.goal_enu is None:
-        raise BadAskError("goto needs a goal: east, north, up")
+    if ask.word == "heading" and ask.yaw_deg is None:
+        raise BadAskError("heading needs a number of degrees")
+    if ask.goal_enu is None or len(goals_of(ask)) > 1:
+        raise BadAskError("goto needs one goal: goal_enu, move_enu, move_body or goal_global")
     goal_ned = ned_from_enu(finite_or_nan(ask.goal_enu))
     return gate.GoTo(goal_ned, None if ask.yaw_deg is None else heading_rad(ask.yaw_deg))
 
@@ -184,6 +215,7 @@ def _up(ask: Ask) -> gate.TakeOff:
 
 _ENU = tuple(Argument(name, ArgumentKind.NUMBER) for name in ("EAST", "NORTH", "UP"))
 _YAW = Argument("YAW_DEG", ArgumentKind.DEGREES, optional=True)
+_AMSL = Argument("--amsl", ArgumentKind.FLAG, optional=True)
 _SECONDS = Argument("SECONDS", ArgumentKind.SECONDS)
 _FOR_SECONDS = Argument("SECONDS", ArgumentKind.SECONDS, optional=True)
 _FILE = (Argument("FILE", ArgumentKind.FILE, "path"),)
@@ -222,6 +254,66 @@ TABLE: Final[tuple[Word, ...]] = (
         _goto,
         moves=True,
         gate=_to_a_goal,
+        needs_control=True,
+    ),
+    Word(
+        "goto-global",
+        "fly straight to latitude, longitude (degrees) and metres above home; --amsl: above mean "
+        "sea level",
+        (*(Argument(name, ArgumentKind.NUMBER) for name in ("LAT", "LON", "UP")), _AMSL, _YAW),
+        "47.397760 8.545650 3",
+        _goto_global,
+        moves=True,
+        doer=Doer.CONSOLE,
+        needs_control=True,
+    ),
+    Word(
+        "move",
+        "fly straight to a point so many metres east, north and up of where it is",
+        (*_ENU, _YAW),
+        "2 0 0",
+        _move,
+        moves=True,
+        doer=Doer.CONSOLE,
+        needs_control=True,
+    ),
+    Word(
+        "forward",
+        "fly straight so many metres where its nose points, to the right of that, and up",
+        (
+            Argument("METRES", ArgumentKind.NUMBER),
+            Argument("RIGHT", ArgumentKind.NUMBER, optional=True),
+            Argument("UP", ArgumentKind.NUMBER, optional=True),
+        ),
+        "2",
+        _forward,
+        moves=True,
+        doer=Doer.CONSOLE,
+        needs_control=True,
+    ),
+    Word(
+        "heading",
+        "turn the nose, and nothing else; YAW_DEG is clockwise from north",
+        (Argument("YAW_DEG", ArgumentKind.DEGREES, "yaw_deg"),),
+        "90",
+        moves=True,
+        gate=_to_a_goal,
+        needs_control=True,
+    ),
+    Word(
+        "orbit",
+        "fly round a circle, nose to its centre (where it is); a negative RADIUS is "
+        "counter-clockwise; TURNS (1), 0: until something else is asked for",
+        (
+            Argument("RADIUS", ArgumentKind.NUMBER),
+            Argument("SPEED", ArgumentKind.NUMBER),
+            Argument("TURNS", ArgumentKind.NUMBER, optional=True),
+            *(replace(each, optional=True) for each in _ENU),
+        ),
+        "5 1",
+        _orbit,
+        moves=True,
+        doer=Doer.ORBIT,
         needs_control=True,
     ),
     Word(
@@ -386,7 +478,6 @@ TABLE: Final[tuple[Word, ...]] = (
         at_once=_TYPED,
         doer=Doer.CONSOLE,
     ),
-    Word("orbit", doer=Doer.ORBIT),
     Word("mission check", doer=Doer.JOB),
     Word("param list", doer=Doer.READER, anyone=True),
     Word("file read", doer=Doer.READER, anyone=True),
@@ -425,13 +516,23 @@ WORD_BY_NAME: dict[str, Word] = {word.name: word for word in WORDS}
 def label(request: Ask) -> str:
     """A request as an operator would type it: the table read backwards."""
     name = request.word
+    if name == "goto":
+        typed_as = {"move_enu": "move", "move_body": "forward", "goal_global": "goto-global"}
+        name = next((typed_as[each] for each in goals_of(request) if each in typed_as), name)
     for first in ("mission", "fence", "rally", "param", "file", "log", "station", "stream"):
         name = name.replace(f"{first}_", f"{first} ")
     parts: list[str] = [name]
     if request.word == "takeoff":
         parts.append(_shown(request.up_m))
-    if request.goal_enu is not None:
-        parts += [_shown(metres) for metres in request.goal_enu]
+    for field, goal in goals_of(request).items():
+        digits = 10 if field == "goal_global" else 6
+        parts += [_shown(number, digits) for number in goal]
+    if request.amsl:
+        parts.append("--amsl")
+    if request.orbit is not None:
+        circle = request.orbit
+        numbers = (circle.radius_m, circle.speed_m_s, circle.turns, *(circle.centre_enu or ()))
+        parts += [f"{number:g}" for number in numbers if number is not None]
     if request.yaw_deg is not None:
         parts.append(_shown(request.yaw_deg))
     if request.word == "fence":
@@ -445,8 +546,8 @@ def label(request: Ask) -> str:
     return " ".join(parts)
 
 
-def _shown(number: float | None) -> str:
-    return "nan" if number is None else f"{number:g}"
+def _shown(number: float | None, digits: int = 6) -> str:
+    return "nan" if number is None else f"{number:.{digits}g}"
 
 
 def help_lines() -> list[str]:

@@ -47,6 +47,13 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "arm": Entry("gcs.cli.oneshot:arm", "Arm the motors."),
         "takeoff": Entry("gcs.cli.oneshot:takeoff", "Climb above the take-off point and hover."),
         "goto": Entry("gcs.cli.oneshot:goto", "Fly straight to a point, metres E N U."),
+        "goto-global": Entry(
+            "gcs.cli.oneshot:goto-global", "Fly straight to latitude, longitude, height."
+        ),
+        "move": Entry("gcs.cli.oneshot:move", "Fly so far east, north, up of where it is."),
+        "forward": Entry("gcs.cli.oneshot:forward", "Fly so far where its nose points."),
+        "heading": Entry("gcs.cli.oneshot:heading", "Turn the nose, and nothing else."),
+        "orbit": Entry("gcs.cli.oneshot:orbit", "Fly round a circle."),
         "land": Entry("gcs.cli.oneshot:land", "Land where it is."),
         "rtl": Entry("gcs.cli.oneshot:rtl", "Return to home and land."),
         "hold": Entry("gcs.cli.oneshot:hold", "Stop and hold, in the vehicle's own hold mode."),

@@ -127,12 +127,14 @@ class OutcomeKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """How an accepted request ended, and why: exactly one for each.  `code` is None if COMPLETE."""
+    """How an accepted request ended, and why: exactly one for each.  `code` is None if COMPLETE;
+    `numbers` are what it came to, such as a picture's number."""
 
     request_id: int
     kind: OutcomeKind
     code: Code | None
     sentence: str
+    numbers: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,8 @@ class ChosenVehicle:
         """An abort of an operation names its vehicle by that."""
         if isinstance(command, ipc.Ask | ipc.Stream):
             command = msgspec.structs.replace(command, vehicle=self._sysid)
+        elif isinstance(command, ipc.Check):
+            command = ipc.Check(msgspec.structs.replace(command.asked, vehicle=self._sysid))
         return self._connection.send(command)
 
     def poll(self, timeout_s: float, also: Sequence[Readable] = ()) -> Polled:

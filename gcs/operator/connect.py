@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Annotated, Literal
+
+import msgspec
 
 from gcs.config import SimConfig, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
@@ -10,7 +13,7 @@ from gcs.operator import joined
 from gcs.operator.chosen_vehicle import ChosenVehicle
 from gcs.operator.client import StationClient, Way
 from gcs.operator.differences import differences, hint, sentence
-from gcs.operator.failures import CannotConnect, Disconnected, StationDiffers
+from gcs.operator.failures import BadArgument, CannotConnect, Disconnected, StationDiffers
 from gcs.operator.station import Station
 from gcs.resources import policy_path
 from gcs.shell.stations import Description
@@ -56,8 +59,24 @@ def connect(
 
     `sign_key`: the file with the vehicle's MAVLink 2 signing key, for a station of its own.
 
-    Waits `timeout_s` for a vehicle to be heard.  Raises CannotConnect.
+    Waits `timeout_s` for a vehicle to be heard.  Raises CannotConnect, BadArgument.
     """
+    _check(
+        {
+            "link": link,
+            "sim": sim,
+            "policy": policy,
+            "sign_key": sign_key,
+            "take_control": take_control,
+            "keep": keep,
+            "autopilot": autopilot,
+            "vehicle": vehicle,
+            "speedup": speedup,
+            "log_dir": log_dir,
+            "name": name,
+            "timeout_s": timeout_s,
+        }
+    )
     if sim and link is not None:
         raise CannotConnect(
             "sim=True starts a vehicle of its own", "leave out the link", ExitCode.USAGE
@@ -101,6 +120,34 @@ def connect(
         station.close()
         raise
     return station
+
+
+class _Arguments(msgspec.Struct):
+    """What `connect` takes; the speed-ups are those of `gcs fly`."""
+
+    link: str | list[str] | None
+    sim: bool
+    policy: str | None
+    sign_key: str | None
+    take_control: bool
+    keep: bool | None
+    autopilot: Literal["px4", "ardupilot"] | None
+    vehicle: Annotated[int, msgspec.Meta(ge=1, le=255)] | None
+    speedup: Annotated[float, msgspec.Meta(gt=0.0)] | None
+    log_dir: str | None
+    name: str
+    timeout_s: Annotated[float, msgspec.Meta(ge=0.0)]
+
+
+def _check(given: dict[str, object]) -> None:
+    """Raises BadArgument."""
+    try:
+        msgspec.convert(given, _Arguments)
+    except msgspec.ValidationError as error:
+        wanted, _, where = str(error).rpartition(" - at `$.")
+        name = where.rstrip("`").partition("[")[0]
+        wanted = wanted.removeprefix("Expected ").partition(", got")[0].replace("`", "")
+        raise BadArgument("connect", name, wanted, given[name]) from None
 
 
 def _running(links: Sequence[str]) -> Description | None:

@@ -1,7 +1,8 @@
-"""What the Python library raises: a request that was refused or not completed, a station lost."""
+"""What the Python library raises: all of it is a `GcsError`."""
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -10,21 +11,41 @@ from gcs.exit_codes import ExitCode
 if TYPE_CHECKING:
     from gcs.operator.differences import Difference
 
+_NONE: Mapping[str, float | None] = {}
+
 
 class GcsError(Exception):
-    """What this library raises."""
+    """What this library raises.
+
+    `code` is a word for programs, `sentence` what happened, `hint` what to do where that is known,
+    `numbers` what it was decided on, with the unit at the end of each name.
+    """
+
+    def __init__(
+        self,
+        code: str,
+        sentence: str,
+        numbers: Mapping[str, float | None] = _NONE,
+        hint: str = "",
+        text: str = "",
+    ) -> None:
+        """`text` is the whole, where it is more than the sentence."""
+        super().__init__(text or sentence)
+        self.code = code
+        self.sentence = sentence
+        self.numbers = dict(numbers)
+        self.hint = hint
 
 
 class CannotConnect(GcsError):  # noqa: N818 - the names read as what happened
     """No station could be started or joined, or it heard no vehicle.
 
-    `exit_code` is what the command line would exit with (`gcs.exit_codes`).
+    `exit_code` is what the command line would exit with, and `code` its name (`gcs.exit_codes`).
     """
 
     def __init__(self, sentence: str, hint: str = "", exit_code: int = ExitCode.NO_VEHICLE) -> None:
-        super().__init__(f"{sentence}; {hint}" if hint else sentence)
-        self.sentence = sentence
-        self.hint = hint
+        text = f"{sentence}; {hint}" if hint else sentence
+        super().__init__(ExitCode(exit_code).name, sentence, hint=hint, text=text)
         self.exit_code = exit_code
 
 
@@ -34,21 +55,18 @@ class StationDiffers(CannotConnect):
 
     def __init__(self, sentence: str, hint: str, differences: Sequence[Difference]) -> None:
         super().__init__(sentence, hint, ExitCode.USAGE)
+        self.code = "STATION_DIFFERS"
         self.differences = tuple(differences)
 
 
 class Refused(GcsError):  # noqa: N818
     """The gate, or the vehicle's station, refused the request: nothing of it was sent.
 
-    `code` is a word for programs (`gcs.gate.refusal.Code`), `numbers` what it was decided on, with
-    the unit at the end of each name.
+    `code` is one of `gcs.gate.refusal.Code`.
     """
 
     def __init__(self, code: str, sentence: str, numbers: Mapping[str, float | None]) -> None:
-        super().__init__(f"{code}: {sentence}")
-        self.code = code
-        self.sentence = sentence
-        self.numbers = dict(numbers)
+        super().__init__(code, sentence, numbers, text=f"{code}: {sentence}")
 
 
 class NotCompleted(GcsError):  # noqa: N818
@@ -58,12 +76,32 @@ class NotCompleted(GcsError):  # noqa: N818
     over: then it goes on.
     """
 
-    def __init__(self, state: str, code: str, sentence: str) -> None:
-        super().__init__(f"{state} {code}: {sentence}" if code else f"{state}: {sentence}")
+    def __init__(
+        self, state: str, code: str, sentence: str, numbers: Mapping[str, float | None] = _NONE
+    ) -> None:
+        text = f"{state} {code}: {sentence}" if code else f"{state}: {sentence}"
+        super().__init__(code, sentence, numbers, text=text)
         self.state = state
-        self.code = code
-        self.sentence = sentence
 
 
 class Disconnected(GcsError):  # noqa: N818
     """The station has ended, or the connection to it."""
+
+    def __init__(self, sentence: str) -> None:
+        super().__init__("DISCONNECTED", sentence)
+
+
+class NotHeard(GcsError, TimeoutError):  # noqa: N818
+    """What was waited for was not heard in time: a message, or an answer of the station."""
+
+    def __init__(self, sentence: str, timeout_s: float | None) -> None:
+        super().__init__("NOT_HEARD", sentence, {"timeout_s": timeout_s})
+
+
+class BadArgument(GcsError, ValueError, TypeError):  # noqa: N818
+    """An argument is not what the method takes: nothing was asked for."""
+
+    def __init__(self, method: str, name: str, wanted: str, value: object) -> None:
+        sentence = f"{method}: {name} must be {wanted}, not {reprlib.repr(value)}"
+        number = value if isinstance(value, int | float) and abs(value) < 1e300 else None
+        super().__init__("BAD_ARGUMENT", sentence, {} if number is None else {name: float(number)})

@@ -17,6 +17,7 @@ from gcs.request_words import (
     ActsAtOnce,
     Argument,
     ArgumentKind,
+    BadAskError,
     Word,
 )
 
@@ -85,13 +86,24 @@ def parse_line(text: str) -> Line | None:
 
 def parse_arguments(word: Word, typed: Sequence[str]) -> Action:
     """What `word` does with what was typed after it.  Raises LineError."""
-    required = sum(not argument.optional for argument in word.arguments)
-    if unknown := unknown_option(word, typed):
+    flags = {each.name for each in word.arguments if each.kind is ArgumentKind.FLAG}
+    texts = [text for text in typed if text not in flags]
+    if unknown := next(filter(_OPTION.fullmatch, texts), ""):
         raise _wrong(word, f"no option {unknown}")
-    if not required <= len(typed) <= len(word.arguments):
-        raise _wrong(word, f"expected {_expectation(word)}, got {len(typed) or 'nothing'}")
-    arguments = zip(word.arguments, typed, strict=False)
-    return word.action(*(_value(word, argument, text) for argument, text in arguments))
+    required = sum(not argument.optional for argument in word.arguments)
+    if not required <= len(texts) <= len(word.arguments) - len(flags):
+        raise _wrong(word, f"expected {_expectation(word)}, got {len(texts) or 'nothing'}")
+    left = iter(texts)
+    values: list[float | str | bool] = []
+    for argument in word.arguments:
+        if argument.name in flags:
+            values.append(argument.name in typed)
+        elif (text := next(left, None)) is not None:
+            values.append(_value(word, argument, text))
+    try:
+        return word.action(*values)
+    except BadAskError as error:
+        raise _wrong(word, str(error)) from None
 
 
 def _value(word: Word, argument: Argument, text: str) -> float | str | bool:
@@ -102,13 +114,9 @@ def _value(word: Word, argument: Argument, text: str) -> float | str | bool:
             if text not in ("on", "off"):
                 raise _wrong(word, f"expected on or off, got {text!r}")
             return text == "on"
-        case ArgumentKind.FLAG:
-            if text != argument.name:
-                raise _wrong(word, f"expected {argument.name} or nothing, got {text!r}")
-            return True
         case ArgumentKind.COUNT:
             return int(_number(word, argument, text))
-        case ArgumentKind.NUMBER | ArgumentKind.DEGREES | ArgumentKind.SECONDS:
+        case _:
             return _number(word, argument, text)
 
 
@@ -132,13 +140,6 @@ def nearest(typed: str, known: Iterable[str]) -> str:
     """The word that may have been meant; empty if none is near."""
     near = difflib.get_close_matches(typed, list(known), n=1)
     return near[0] if near else ""
-
-
-def unknown_option(word: Word, typed: Sequence[str]) -> str:
-    """The first of what was typed that looks like an option, if the word has none; else empty."""
-    if any(argument.kind is ArgumentKind.FLAG for argument in word.arguments):
-        return ""
-    return next((text for text in typed if _OPTION.fullmatch(text)), "")
 
 
 _OPTION = re.compile(r"--[A-Za-z].*|-[A-Za-z]")

@@ -1,4 +1,4 @@
-"""The Python library: a station as an object, with one method a request.
+"""The Python library: a station as an object; its requests are in `requests/`.
 
 `connect.py` starts a station process or joins one that runs; a thread reads its events.  A method
 that asks for something returns when it is complete, or raises `Refused` or `NotCompleted`.  With
@@ -12,7 +12,6 @@ north, times seconds.
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from collections import deque
@@ -23,10 +22,16 @@ import msgspec
 
 from gcs import ipc
 from gcs.frames import Vec3
+from gcs.gate.refusal import Code
+from gcs.operator import arguments
 from gcs.operator.client import Listened, StationEnded, StationEvent
-from gcs.operator.conversation import Conversation, Found, TrackedRequest
-from gcs.operator.failures import Disconnected, NotCompleted, Refused
-from gcs.operator.stream import Stream, number
+from gcs.operator.conversation import Conversation
+from gcs.operator.failures import BadArgument, Disconnected, NotCompleted, NotHeard, Refused
+from gcs.operator.operation import Operation
+from gcs.operator.requests.flights import Flights, goto_of
+from gcs.operator.requests.missions import Missions
+from gcs.operator.requests.parameters import Parameters
+from gcs.operator.stream import Stream
 
 TELEMETRY_WAIT_S = 5.0
 ANSWER_WAIT_S = 10.0
@@ -34,52 +39,7 @@ KEPT_EVENTS = 10_000
 """Of an `events()` that is not read; the oldest are forgotten."""
 
 
-class Operation:
-    """An accepted request, which may still be under way."""
-
-    def __init__(self, station: Station, tracked: TrackedRequest) -> None:
-        self._station = station
-        self._tracked = tracked
-        self.asked = tracked.sent
-
-    @property
-    def id(self) -> int:
-        """The station's number of it, as `gcs operations` shows it."""
-        return 0 if self._tracked.verdict is None else self._tracked.verdict.operation
-
-    @property
-    def state(self) -> str:
-        """running, complete, aborted, superseded, timed out or taken over."""
-        return "running" if self._tracked.outcome is None else self._tracked.outcome.ended
-
-    @property
-    def found(self) -> list[Found]:
-        """What was read for it."""
-        return self._tracked.found
-
-    def wait(self, timeout_s: float | None = None) -> Operation:
-        """Until it is complete.  Raises NotCompleted, Disconnected."""
-        self._station.wait_until(lambda: self._tracked.settled, timeout_s)
-        ending = self._tracked.outcome
-        if ending is None:
-            text = f"{self._tracked.label} is still under way after {timeout_s:g} s"
-            raise NotCompleted("running", "", text)
-        if ending.ended != "complete":
-            raise NotCompleted(ending.ended, ending.code, ending.sentence)
-        return self
-
-    def stop(self) -> None:
-        """Abort it, if it is still under way; if it is not, nothing else is stopped instead.
-
-        Raises Refused with NOT_RUNNING, NotCompleted, Disconnected.
-        """
-        self._station.request(ipc.Ask(0, "abort", operation=self.id))
-
-    def __repr__(self) -> str:
-        return f"<Operation {self.id} {self._tracked.label}: {self.state}>"
-
-
-class Station:
+class Station(Flights, Missions, Parameters):
     """A connected station.  Made by `connect`; a `with` block leaves it at its end.
 
     Leaving a station of one's own ends it: a vehicle that it flies is held first.  A station that
@@ -119,63 +79,7 @@ class Station:
         self._connection.send(ipc.Leave("the program ends"))
         self._connection.close()
 
-    # --------------------------------------------------------------------------- requests
-
-    def control(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Take control of a vehicle that flies without the station, and hover."""
-        return self.request(ipc.Ask(0, "control"), wait, timeout_s)
-
-    def arm(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        return self.request(ipc.Ask(0, "arm"), wait, timeout_s)
-
-    def disarm(
-        self, *, force: bool = False, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Stop the motors on the ground; `force` in the air too, where the policy allows it."""
-        return self.request(ipc.Ask(0, "disarm", force=force), wait, timeout_s)
-
-    def takeoff(
-        self, up_m: float, *, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Climb to `up_m` metres above the take-off point and hover."""
-        return self.request(ipc.Ask(0, "takeoff", up_m=number(up_m)), wait, timeout_s)
-
-    def goto(
-        self,
-        east_m: float,
-        north_m: float,
-        up_m: float,
-        yaw_deg: float | None = None,
-        *,
-        wait: bool = True,
-        timeout_s: float | None = None,
-    ) -> Operation:
-        """Fly straight there and hover."""
-        goal = (number(east_m), number(north_m), number(up_m))
-        return self.request(ipc.Ask(0, "goto", goal_enu=goal, yaw_deg=yaw_deg), wait, timeout_s)
-
-    def orbit(
-        self,
-        radius_m: float,
-        speed_m_s: float,
-        centre: tuple[float, float, float] | None = None,
-        *,
-        turns: float = 0.0,
-        nose: str = "centre",
-        wait: bool | None = None,
-        timeout_s: float | None = None,
-    ) -> Operation:
-        """Fly to the circle and round it; a positive radius is clockwise, seen from above.
-
-        `centre` is metres east, north, up; None is where the vehicle is.  `turns` 0 is until
-        something else is asked for, and then it is waited for only if that is said.  `nose`:
-        centre, initial, free, along.  Raises ValueError for numbers that are not finite.
-        """
-        if not all(map(math.isfinite, (radius_m, speed_m_s, turns, *(centre or ())))):
-            raise ValueError("an orbit has finite numbers only")
-        circle = ipc.Circle(centre, radius_m, speed_m_s, turns, nose)
-        waits = turns > 0.0 if wait is None else wait
-        return self.request(ipc.Ask(0, "orbit", orbit=circle), waits, timeout_s)
+    # --------------------------------------------------------------------------- streams
 
     def stream(self) -> Stream:
         """A setpoint stream: velocities or positions, one after the other, in a `with` block.
@@ -195,148 +99,23 @@ class Station:
         *,
         seconds: float,
     ) -> None:
-        """Fly this fast for so many seconds, then hover.
+        """Fly this fast for so many seconds, more than 0, then hover.
 
         Raises Refused where that is refused, at once or on the way, such as before the fence: the
         vehicle hovers there then.  Raises NotCompleted, Disconnected.
         """
+        for_s = arguments.positive("velocity", seconds=seconds)
+        v_enu = arguments.numbers("velocity", east_m_s=east_m_s, north_m_s=north_m_s, up_m_s=up_m_s)
+        rate = arguments.optional("velocity", yaw_rate_deg_s=yaw_rate_deg_s)
         with self.stream() as stream:
-            for _ in stream.ticks(seconds):
-                stream.velocity(east_m_s, north_m_s, up_m_s, yaw_rate_deg_s=yaw_rate_deg_s)
+            for _ in stream.ticks(for_s):
+                stream.send(ipc.Stream(v_enu=v_enu, yaw_rate_deg_s=rate))
                 if stream.refusal is not None:
                     break
             refusal = stream.refusal
             stream.check()
         if refusal is not None:
             raise Refused(refusal.code, refusal.sentence, refusal.numbers)
-
-    def fly(self, path: str, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Upload a mission file (or a shipped mission by its name), then start it."""
-        self.upload(path)
-        return self.start_mission(wait=wait, timeout_s=timeout_s)
-
-    def upload(self, path: str, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Verify a mission file, send it to the vehicle and read it back."""
-        return self.request(ipc.Ask(0, "mission_upload", path=path), wait, timeout_s)
-
-    def download(
-        self, path: str, *, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Read mission, fence and rally points on board, and where home is, into a file."""
-        return self.request(ipc.Ask(0, "mission_download", path=path), wait, timeout_s)
-
-    def clear_mission(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Remove the mission on board; its fence and rally points stay."""
-        return self.request(ipc.Ask(0, "mission_clear"), wait, timeout_s)
-
-    def put_fence(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Put the policy's own fence on board, so that the vehicle keeps it when the link is down.
-
-        On the ground; else Refused with IN_AIR.
-        """
-        return self.request(ipc.Ask(0, "fence_put"), wait, timeout_s)
-
-    def upload_fence(
-        self, path: str, *, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Send the fence of a file to the vehicle, in place of the one on board."""
-        return self.request(ipc.Ask(0, "fence_upload", path=path), wait, timeout_s)
-
-    def download_fence(
-        self, path: str, *, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Read the fence on board into a file."""
-        return self.request(ipc.Ask(0, "fence_download", path=path), wait, timeout_s)
-
-    def clear_fence(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Remove the fence on board.  On the ground; else Refused with IN_AIR."""
-        return self.request(ipc.Ask(0, "fence_clear"), wait, timeout_s)
-
-    def upload_rally(
-        self, path: str, *, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Send the rally points of a file to the vehicle, in place of those on board."""
-        return self.request(ipc.Ask(0, "rally_upload", path=path), wait, timeout_s)
-
-    def download_rally(
-        self, path: str, *, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Read the rally points on board into a file."""
-        return self.request(ipc.Ask(0, "rally_download", path=path), wait, timeout_s)
-
-    def clear_rally(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Remove the rally points on board."""
-        return self.request(ipc.Ask(0, "rally_clear"), wait, timeout_s)
-
-    def start_mission(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Fly the mission on board."""
-        return self.request(ipc.Ask(0, "mission_start"), wait, timeout_s)
-
-    def land(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Land where it is."""
-        return self.request(ipc.Ask(0, "land"), wait, timeout_s)
-
-    def rtl(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Return to home and land."""
-        return self.request(ipc.Ask(0, "rtl"), wait, timeout_s)
-
-    def hold(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Stop and hold, in the vehicle's own hold mode."""
-        return self.request(ipc.Ask(0, "hold"), wait, timeout_s)
-
-    def abort(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Stop now and forget the goal; whoever is in control, and whatever is waited for."""
-        return self.request(ipc.Ask(0, "abort"), wait, timeout_s)
-
-    def resume(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """After a hold: hover under the station's control."""
-        return self.request(ipc.Ask(0, "resume"), wait, timeout_s)
-
-    def photo(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        return self.request(ipc.Ask(0, "photo"), wait, timeout_s)
-
-    def mode(
-        self, mode_name: str, *, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Ask for a flight mode by the autopilot's own name."""
-        return self.request(ipc.Ask(0, "mode", mode=mode_name), wait, timeout_s)
-
-    def take_control(self) -> None:
-        """Be the operator in control of this station, in place of whoever is; all are told."""
-        self.request(ipc.Ask(0, "station_take"))
-
-    # ------------------------------------------------------------------------ parameters
-
-    def parameters(self, timeout_s: float | None = None) -> dict[str, int | float]:
-        """All parameters of the vehicle, by name; whole numbers where their type is.
-
-        Raises Refused, NotCompleted, Disconnected.
-        """
-        return self._parameters(ipc.Ask(0, "param_list"), timeout_s)
-
-    def parameter(self, name: str, timeout_s: float | None = None) -> int | float:
-        """One parameter.  Raises Refused with BAD_PARAMETER where the vehicle has none of that
-        name, and says which are near."""
-        return self._parameters(ipc.Ask(0, "param_get", name=name), timeout_s)[name]
-
-    def set_parameter(
-        self, name: str, value: float, *, wait: bool = True, timeout_s: float | None = None
-    ) -> Operation:
-        """Set a parameter; complete once it is read back as asked.
-
-        What safety stands on is set while the vehicle is disarmed on the ground only.
-        """
-        ask = ipc.Ask(0, "param_set", name=name, value=number(value))
-        return self.request(ask, wait, timeout_s)
-
-    def _parameters(self, ask: ipc.Ask, timeout_s: float | None) -> dict[str, int | float]:
-        found = self.request(ask, True, timeout_s).found
-        told = [each for each in found if isinstance(each, ipc.ParametersEvent)]
-        return {
-            each.name: math.nan if each.value is None else each.value
-            for event in told
-            for each in event.parameters
-        }
 
     # --------------------------------------------------------------------------- reports
 
@@ -348,7 +127,7 @@ class Station:
         """
         self.wait_until(lambda: self.talk.snapshot is not None, ANSWER_WAIT_S)
         if self.talk.snapshot is None:
-            raise Disconnected("the station tells nothing")
+            raise NotHeard("the station tells nothing", ANSWER_WAIT_S)
         return self.talk.snapshot
 
     @property
@@ -363,6 +142,7 @@ class Station:
 
     @property
     def armed(self) -> bool | None:
+        """Whether the motors run, as the vehicle reports; None while it is not known."""
         return self.snapshot.armed
 
     @property
@@ -382,26 +162,27 @@ class Station:
         """The latest fields of a MAVLink message of the vehicle, such as "BATTERY_STATUS".
 
         The first call for a message subscribes to it and waits until it is heard.  Raises
-        ValueError for a name that no message has, and for a vehicle of a bridge that is not its
-        first, of which no messages are told; TimeoutError if it is not heard in time.
+        BadArgument for a name that no message has; Refused for a vehicle of a bridge that is not
+        its first, of which no messages are told; NotHeard if it is not heard in time.
         """
+        arguments.text("telemetry", message=message)
+        wait_s = arguments.seconds("telemetry", timeout_s=timeout_s)
         if not self._tells_messages:
-            raise ValueError("of several vehicles only the first one's messages are told")
+            sentence = "of several vehicles only the first one's messages are told"
+            raise Refused(Code.UNSUPPORTED, sentence, {})
         with self._changed:
             if message not in self._messages:
                 self._unknown_messages = ""
                 self._subscribed[message] = None
                 self._connection.send(ipc.Subscribe([*self._subscribed]))
-        self.wait_until(
-            lambda: message in self._messages or bool(self._unknown_messages), timeout_s
-        )
+        self.wait_until(lambda: message in self._messages or bool(self._unknown_messages), wait_s)
         with self._changed:
             if message in self._messages:
                 return self._messages[message]
             if self._unknown_messages:
                 del self._subscribed[message]
-                raise ValueError(self._unknown_messages)
-        raise TimeoutError(f"no {message} was heard within {timeout_s:g} s")
+                raise BadArgument("telemetry", "message", "the name of a MAVLink message", message)
+        raise NotHeard(f"no {message} was heard within {wait_s:g} s", wait_s)
 
     def events(self) -> Iterator[ipc.Event]:
         """Everything that the station tells from now on (`gcs.ipc`), until it ends or is left."""
@@ -422,7 +203,8 @@ class Station:
             yield event
 
     def request(self, ask: ipc.Ask, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Send it; return once it is complete, or with `wait=False` accepted."""
+        """Any request (`gcs.ipc.Ask`): until it is complete, or with `wait=False` accepted."""
+        timeout_s = arguments.seconds(ask.word, timeout_s=timeout_s)
         deadline_s = None if timeout_s is None else time.monotonic() + timeout_s
         with self._changed:
             tracked = self.talk.ask(ask)
@@ -431,11 +213,12 @@ class Station:
         self.wait_until(lambda: tracked.verdict is not None, timeout_s)
         verdict = tracked.verdict
         if verdict is None:
-            raise NotCompleted("running", "", f"{tracked.label}: no verdict after {timeout_s:g} s")
+            text = f"{tracked.label}: no verdict after {timeout_s:g} s"
+            raise NotCompleted("running", "", text, {"timeout_s": timeout_s})
         if verdict.outcome == "refused":
             raise Refused(verdict.code, verdict.sentence, verdict.numbers)
         if verdict.outcome != "accepted":
-            raise NotCompleted(verdict.outcome, verdict.code, verdict.sentence)
+            raise NotCompleted(verdict.outcome, verdict.code, verdict.sentence, verdict.numbers)
         operation = Operation(self, tracked)
         if not wait:
             return operation
@@ -451,8 +234,19 @@ class Station:
         self.wait_until(lambda: self._checked(number_sent) is not None, timeout_s)
         answer = self._checked(number_sent)
         if answer is None:
-            raise Disconnected("the station tells nothing")
+            raise NotHeard("the station tells nothing", ANSWER_WAIT_S)
         return answer
+
+    def check_goto(
+        self, east_m: float, north_m: float, up_m: float, yaw_deg: float | None = None
+    ) -> ipc.Checked:
+        """The verdict that this `goto` would get now; nothing is done.
+
+        `outcome` is accepted, refused or waits, with `code`, `sentence` and `numbers`.  The goal is
+        also judged by itself, as from where the vehicle will hover: `goal_code` is empty where it
+        clears, also while the vehicle stands on the ground or flies elsewhere.
+        """
+        return self.check(goto_of("check_goto", east_m, north_m, up_m, yaw_deg))
 
     def _checked(self, number_sent: int) -> ipc.Checked | None:
         answer = self.talk.checked

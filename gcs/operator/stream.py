@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import Protocol
 
 from gcs import ipc
+from gcs.operator import arguments
 from gcs.operator.conversation import Conversation
 from gcs.operator.failures import Disconnected, NotCompleted
 
@@ -87,14 +88,18 @@ class Stream:
     ) -> None:
         """Fly this fast until the next sample comes.  Raises NotCompleted where the stream has
         ended, as by a hold, and Disconnected."""
-        v_enu = _vector(east_m_s, north_m_s, up_m_s)
-        self.send(ipc.Stream(v_enu=v_enu, yaw_deg=yaw_deg, yaw_rate_deg_s=yaw_rate_deg_s))
+        v_enu = arguments.numbers("velocity", east_m_s=east_m_s, north_m_s=north_m_s, up_m_s=up_m_s)
+        yaw = arguments.optional("velocity", yaw_deg=yaw_deg)
+        rate = arguments.optional("velocity", yaw_rate_deg_s=yaw_rate_deg_s)
+        self.send(ipc.Stream(v_enu=v_enu, yaw_deg=yaw, yaw_rate_deg_s=rate))
 
     def position(
         self, east_m: float, north_m: float, up_m: float, *, yaw_deg: float | None = None
     ) -> None:
         """Fly there until the next sample comes.  Raises NotCompleted, Disconnected."""
-        self.send(ipc.Stream(pos_enu=_vector(east_m, north_m, up_m), yaw_deg=yaw_deg))
+        pos_enu = arguments.numbers("position", east_m=east_m, north_m=north_m, up_m=up_m)
+        yaw = arguments.optional("position", yaw_deg=yaw_deg)
+        self.send(ipc.Stream(pos_enu=pos_enu, yaw_deg=yaw))
 
     def attitude(
         self,
@@ -111,11 +116,11 @@ class Stream:
         Disconnected."""
         self.send(
             ipc.Stream(
-                roll_deg=number(roll_deg),
-                pitch_deg=number(pitch_deg),
-                yaw_deg=number(yaw_deg),
-                yaw_rate_deg_s=yaw_rate_deg_s,
-                thrust=number(thrust),
+                roll_deg=arguments.number("attitude", roll_deg=roll_deg),
+                pitch_deg=arguments.number("attitude", pitch_deg=pitch_deg),
+                yaw_deg=arguments.number("attitude", yaw_deg=yaw_deg),
+                yaw_rate_deg_s=arguments.optional("attitude", yaw_rate_deg_s=yaw_rate_deg_s),
+                thrust=arguments.number("attitude", thrust=thrust),
             )
         )
 
@@ -137,17 +142,10 @@ class Stream:
 
         Ends sooner where the stream ends.
         """
+        arguments.positive("ticks", seconds=seconds)
+        arguments.positive("ticks", period_s=period_s)
         begun_s = time.monotonic()
         while not self._ended and (past_s := time.monotonic() - begun_s) < seconds:
             yield past_s
             left_s = begun_s + seconds - time.monotonic()
             self._station.wait_until(lambda: self._ended, max(0.0, min(period_s, left_s)))
-
-
-def _vector(east: float, north: float, up: float) -> ipc.Maybe3:
-    return (number(east), number(north), number(up))
-
-
-def number(value: float) -> float | None:
-    """JSON has no NaN: null stands for it, and the gate refuses it by name."""
-    return float(value) if math.isfinite(value) else None

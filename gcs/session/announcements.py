@@ -139,7 +139,9 @@ def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
         goal=None,
         numbers={},
     )
-    event = ipc.EndingEvent(asked.ask.id, item.word, item.outcome, item.code, item.sentence)
+    event = ipc.EndingEvent(
+        asked.ask.id, item.word, item.outcome, item.code, item.sentence, dict(told.numbers)
+    )
     return [Emit(event, asked.operator), Record(item)]
 
 

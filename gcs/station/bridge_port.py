@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -39,7 +39,6 @@ from gcs.gate.requests import Arm
 from gcs.gate.states import LandedState
 from gcs.protocol.effects import Address
 from gcs.protocol.enforced_sysid import hears_alone
-from gcs.protocol.parameter_names import names_of
 from gcs.session import announcements
 from gcs.session.effects import Effect, Emit, LeaveOutPeer
 from gcs.session.speedup_waits import Times
@@ -47,11 +46,11 @@ from gcs.session.work import Log, Work
 from gcs.station.links import Counts, Links
 from gcs.station.operator_lines import line
 from gcs.station.operators import Operators
+from gcs.station.seen import seen_of
 from gcs.station.signatures import Signatures
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.missions.missions import timing_of
 from gcs.vehicle.missions.return_places import why_not_rally_point
-from gcs.vehicle.parameters.settings import SPEED, TAKEOFF_HEIGHT
 from gcs.vehicle.snapshot import bridge_row, lost_pct
 from gcs.vehicle.talk.commands import shown_commands
 from gcs.vehicle.talk.discovery import needed_hz
@@ -356,43 +355,3 @@ def _clears_takeoff(gate: Gate, up_m: float) -> bool:
     if gate.severity >= Severity.HOLD or memory.verifier is None or memory.pos_ned is None:
         return False
     return not isinstance(memory.verifier.takeoff(up_m, memory.pos_ned), Refusal)
-
-
-TAKEOFF_UP_M = 2.5
-"""PX4's MIS_TAKEOFF_ALT where it is not known."""
-
-
-def seen_of(
-    telemetry: Telemetry, gate: Gate, parameters: Mapping[str, float], max_takeoff_up_m: float
-) -> Seen:
-    """What a client's words are judged by."""
-    memory = gate.memory
-    goal = memory.goal or memory.hold
-    return Seen(
-        autopilot=telemetry.autopilot,
-        origin=telemetry.origin,
-        home_ned=telemetry.home_ned,
-        home_amsl_m=telemetry.home[2] if telemetry.home else None,
-        pos_ned=telemetry.pos_ned,
-        v_ned=telemetry.v_ned,
-        yaw_rad=telemetry.yaw_rad,
-        on_ground=memory.on_ground,
-        armed=bool(telemetry.armed),
-        mode_name=telemetry.mode_name,
-        goal_ned=gate.active_goal_ned,
-        takeoff_up_m=parameters.get(TAKEOFF_HEIGHT["px4"], TAKEOFF_UP_M),
-        state=gate.state,
-        awaited=memory.task is not None or bool(memory.outstanding),
-        goal_yaw_rad=goal.yaw_rad if goal else None,
-        max_takeoff_up_m=max_takeoff_up_m,
-        max_speed_m_s=_own_speed_m_s(telemetry, parameters),
-    )
-
-
-def _own_speed_m_s(telemetry: Telemetry, parameters: Mapping[str, float]) -> float:
-    """What it flies at by itself, and what missions are verified with; 0 before it is known."""
-    newest = SPEED.get(telemetry.autopilot.name)
-    for name in names_of(newest) if newest else ():
-        if name.name in parameters:
-            return parameters[name.name] * name.scale
-    return 0.0

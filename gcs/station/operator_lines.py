@@ -10,6 +10,7 @@ from gcs import ipc
 from gcs.bridge.bridge import Bridge
 from gcs.bridge.judge.climbs import HEIGHT_WRITTEN
 from gcs.gate.machine.could import why_not_once_hovering
+from gcs.gate.refusal import Refusal
 from gcs.gate.requests import GoTo
 from gcs.protocol.autopilot import GENERIC
 from gcs.protocol.effects import Address
@@ -18,6 +19,7 @@ from gcs.session import announcements
 from gcs.session.effects import Emit
 from gcs.session.requests import request_of, source_of
 from gcs.session.work import STATION, ForOwner, Work
+from gcs.station.goals import settled
 from gcs.station.operators import Operators
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.gate_port import NOT_FLYING
@@ -67,6 +69,9 @@ def _asked(
         held = bridge.held_back(command, telemetry.autopilot, vehicle)
         not_now = bridge.armings.why_not(command, telemetry.sysid)
         refusal = refusal or not_now
+    if isinstance(command, ipc.Ask) and refusal is None and owner != STATION:
+        asked = settled(command, telemetry, vehicles.of_owner(owner).gate)
+        command, refusal = (command, asked) if isinstance(asked, Refusal) else (asked, None)
     if isinstance(command, ipc.Stream) and owner != STATION:
         streamed = vehicles.of_owner(owner).orbits.streams_itself(operator)
         return [*streamed, *operators.line(operator, command, autopilot, refusal, now_ns)]
@@ -90,6 +95,9 @@ def _checked(
     refusal = operators.control.refusal(operator, ask) or vehicles.refusal(owner, now_ns)
     if bridge is not None and refusal is None and owner != STATION:
         refusal = bridge.armings.why_not(ask, vehicle.sysid)
+    if refusal is None and owner != STATION:
+        asked = settled(ask, vehicle.telemetry, vehicle.gate)
+        ask, refusal = (ask, asked) if isinstance(asked, Refusal) else (asked, None)
     if refusal is not None or owner == STATION:
         return announcements.checked(ask, refusal)
     if doer_of(ask.word) is not Doer.GATE:

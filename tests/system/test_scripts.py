@@ -18,7 +18,15 @@ pytestmark = pytest.mark.system
 
 SETPOINT = "SET_POSITION_TARGET_LOCAL_NED"
 SCRIPTS = Path(__file__).parents[2] / "missions" / "scripts"
-TESTED = {"square.py", "fly_plan.py", "watch_battery.py", "velocity.py", "stop.py"}
+TESTED = {
+    "square.py",
+    "fly_plan.py",
+    "photo_survey.py",
+    "stop.py",
+    "velocity.py",
+    "watch_async.py",
+    "watch_battery.py",
+}
 
 
 def run(name: str, *arguments: str, folder: Path) -> list[str]:
@@ -105,6 +113,26 @@ def sent_m(path: Path) -> tuple[float, float]:
 def place_of(line: str) -> tuple[float, ...]:
     """Of a line such as `at (2.0, 0.0, 3.0)`."""
     return tuple(float(metres) for metres in line.removeprefix("at (").rstrip(")").split(", "))
+
+
+def test_with_asyncio_it_is_flown_while_another_task_watches(tmp_path: Path) -> None:
+    place, end = run("watch_async.py", folder=tmp_path)
+    east_m, north_m, up_m = place_of(place)
+    assert math.hypot(east_m - 3.0, north_m - 2.0) == pytest.approx(2.0, abs=1.0)
+    assert up_m == pytest.approx(4.0, abs=0.7)
+    assert end.startswith("GROUNDED logs/")
+
+
+@pytest.mark.thorough
+def test_a_survey_on_the_map_takes_a_picture_at_each_corner(tmp_path: Path) -> None:
+    lines = run("photo_survey.py", folder=tmp_path)
+    pictures, places = zip(*(line.split(" at ") for line in lines), strict=True)
+    assert pictures == tuple(f"picture {number}" for number in range(4))
+    corners = [place_of(f"at {place}")[:2] for place in places]
+    for (east_m, north_m), (east, north) in zip(
+        corners, ((0, 0), (0, 1), (1, 1), (1, 0)), strict=True
+    ):
+        assert (east_m, north_m) == pytest.approx((9.78 * east, 10.0 * north), abs=0.05)
 
 
 @pytest.mark.thorough

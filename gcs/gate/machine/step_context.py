@@ -295,7 +295,9 @@ class StepContext:
                 self.say(Level.WARNING, why.sentence)
             return
         code, sentence = (None, "Complete") if why is None else (why.code, why.sentence)
-        self.out.append(Outcome(task.requested.request_id, end.kind, code, sentence))
+        taken = task.kind is Event.PHOTO and code is None and memory.photo_index is not None
+        numbers = (("picture", float(memory.photo_index or 0)),) if taken else ()
+        self.out.append(Outcome(task.requested.request_id, end.kind, code, sentence, numbers))
         level = Level.INFO if end.kind is OutcomeKind.COMPLETE else Level.WARNING
         # The lab's word, and of what.
         done = f"Complete: {task.kind}"

@@ -97,7 +97,7 @@ def test_of_a_bridge_one_vehicle_is_flown(monkeypatch: pytest.MonkeyPatch) -> No
         station.abort(wait=False)
         way.tell(ipc.StateEvent("HOVERING", "HOLDING", "", "OURS", "NOMINAL"))
         assert station.state == "HOVERING", "that may have been another vehicle"
-        with pytest.raises(ValueError, match="only the first one's messages"):
+        with pytest.raises(gcs.Refused, match="only the first one's messages"):
             station.telemetry("BATTERY_STATUS")
     assert [each.vehicle for each in way.sent if isinstance(each, ipc.Ask)] == [2]
 
@@ -166,3 +166,23 @@ def test_the_autopilot_of_a_vehicle_that_is_there_cannot_be_chosen() -> None:
     with pytest.raises(gcs.CannotConnect, match="is for the vehicle of sim=True") as wrong:
         gcs.connect(LINK, autopilot="ardupilot")
     assert wrong.value.exit_code == ExitCode.USAGE
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"link": 5}, "connect: link must be str | array | null, not 5"),
+        ({"link": [LINK, 5]}, "connect: link must be str, not ['udpin://127.0.0.1:47001', 5]"),
+        ({"policy": 1}, "connect: policy must be str | null, not 1"),
+        ({"timeout_s": "x"}, "connect: timeout_s must be float, not 'x'"),
+        ({"timeout_s": -1}, "connect: timeout_s must be float >= 0.0, not -1"),
+        ({"sim": True, "speedup": 0}, "connect: speedup must be float > 0.0, not 0"),
+        ({"vehicle": 256}, "connect: vehicle must be int <= 255, not 256"),
+        ({"sim": True, "autopilot": "dji"}, "connect: autopilot must be"),
+    ],
+)
+def test_a_wrong_argument_is_named(given: dict[str, object], sentence: str) -> None:
+    with pytest.raises(gcs.BadArgument) as wrong:
+        gcs.connect(**given)  # type: ignore[arg-type]
+    assert str(wrong.value).startswith(sentence)
+    assert isinstance(wrong.value, ValueError | TypeError)

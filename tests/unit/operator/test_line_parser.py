@@ -33,6 +33,24 @@ def test_every_example_is_understood_and_is_of_its_word(word: request_words.Word
         ("takeoff 2", ipc.Ask(0, "takeoff", up_m=2.0)),
         ("goto 3 -1.5 2", ipc.Ask(0, "goto", goal_enu=(3.0, -1.5, 2.0))),
         ("goto 3 0 2 90", ipc.Ask(0, "goto", goal_enu=(3.0, 0.0, 2.0), yaw_deg=90.0)),
+        ("move 2 0 -1", ipc.Ask(0, "goto", move_enu=(2.0, 0.0, -1.0))),
+        ("move 2 0 1 90", ipc.Ask(0, "goto", move_enu=(2.0, 0.0, 1.0), yaw_deg=90.0)),
+        ("forward 5", ipc.Ask(0, "goto", move_body=(5.0, 0.0, 0.0))),
+        ("forward 5 -1 2", ipc.Ask(0, "goto", move_body=(5.0, -1.0, 2.0))),
+        (
+            "goto-global 47.3977601 -8.5 3",
+            ipc.Ask(0, "goto", goal_global=(47.3977601, -8.5, 3.0)),
+        ),
+        (
+            "goto-global 47.3977601 8.5 491 90 --amsl",
+            ipc.Ask(0, "goto", goal_global=(47.3977601, 8.5, 491.0), amsl=True, yaw_deg=90.0),
+        ),
+        ("heading -90", ipc.Ask(0, "heading", yaw_deg=-90.0)),
+        ("orbit 5 1", ipc.Ask(0, "orbit", orbit=ipc.Circle(None, 5.0, 1.0, 1.0))),
+        (
+            "orbit -5 1 0 3 0 2",
+            ipc.Ask(0, "orbit", orbit=ipc.Circle((3.0, 0.0, 2.0), -5.0, 1.0, 0.0)),
+        ),
         ("disarm", ipc.Ask(0, "disarm")),
         ("disarm --force", ipc.Ask(0, "disarm", force=True)),
         ("mode AUTO.LOITER", ipc.Ask(0, "mode", mode="AUTO.LOITER")),
@@ -179,7 +197,18 @@ def test_nothing_that_starts_a_motion_overtakes_and_every_stop_does(
         ("goto -v 1 0 2", "goto: no option -v"),
         ("arm now", "arm: expected no arguments, got 1"),
         ("takeoff", "takeoff: expected 1 number UP, got nothing"),
-        ("disarm -f", "disarm: expected --force or nothing, got '-f'"),
+        ("disarm -f", "disarm: no option -f"),
+        ("disarm now", "disarm: expected at most [--force], got 1"),
+        ("heading", "heading: expected 1 number of degrees from -360 to 360 YAW_DEG, got nothing"),
+        (
+            "goto-global 47 8 --amsl",
+            "goto-global: expected 3 numbers LAT LON UP [--amsl] [YAW_DEG], got 2",
+        ),
+        ("goto-global 47 8 5 --sea", "goto-global: no option --sea"),
+        (
+            "orbit 5 1 1 0 0",
+            "orbit: the centre is EAST NORTH UP, or nothing: where the vehicle is",
+        ),
         ("fence", "fence: expected on or off, got nothing"),
         ("fence maybe", "fence: expected on or off, got 'maybe'"),
         ("wait -1", "wait: SECONDS: expected a number of seconds, not negative, got '-1'"),
@@ -219,7 +248,19 @@ def test_a_label_reads_back_as_the_same_request(
 
 @pytest.mark.parametrize(
     "line",
-    ["arm", "takeoff 2", "disarm --force", "mode HOLD", "fence off", "mission upload a.plan"],
+    [
+        "arm",
+        "takeoff 2",
+        "move 2 0 -1 90",
+        "forward 5 -1 2",
+        "goto-global 47.3977601 -8.5 491 --amsl 90",
+        "heading 90",
+        "orbit -5 1 0 3 0 2",
+        "disarm --force",
+        "mode HOLD",
+        "fence off",
+        "mission upload a.plan",
+    ],
 )
 def test_labels_are_what_an_operator_would_type(line: str) -> None:
     assert request_words.label(requests(line)[0]) == line

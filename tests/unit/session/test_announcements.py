@@ -80,7 +80,7 @@ def test_an_ending_is_a_decision_of_the_record() -> None:
     assert told(announcements.outcome(ended, ASKED, 1)) == (
         [
             '{"type":"ending","id":3,"word":"goto","ended":"aborted","code":"STALE",'
-            '"sentence":"no position"}'
+            '"sentence":"no position","numbers":{}}'
         ],
         [
             '{"vehicle":1,"request_id":7,"source":"operator","word":"goto","phase":"ending",'

@@ -1,0 +1,1 @@
+"""What a Python program can ask of a station: a class a subject, whose methods `Station` has."""
