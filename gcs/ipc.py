@@ -459,6 +459,40 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     in_control: OperatorInfo | None = None  # of the station; None = nobody
 
 
+class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
+    """Where the vehicle was, and how, at one second of its flight; an array in JSON."""
+
+    time_ns: int
+    pos_enu: Vec3  # metres
+    speed_m_s: float | None
+    battery_pct: float | None
+    in_air: bool
+
+
+class History(msgspec.Struct, frozen=True, tag="history", tag_field="type"):
+    """What was before, for an operator who has joined: the last ten minutes of the vehicle's way,
+    the latest lines of the log, and since when it has been in the air."""
+
+    trail: list[TrailPoint]
+    log: list[LogEvent]
+    in_air_since_ns: int | None = None  # on the clock of the snapshots; null: on the ground
+
+
+class MissionPath(msgspec.Struct, frozen=True, tag="mission_path", tag_field="type"):
+    """The path of the mission on board as it was verified; empty where there is none.  Told when it
+    changes, of the vehicle that snapshots show."""
+
+    points_enu: list[Vec3]  # metres; the legs join them in order
+
+
+class OperatorGoal(msgspec.Struct, frozen=True, tag="operator_goal", tag_field="type"):
+    """The operator in control has another goal in mind: its `Pending`, for the others."""
+
+    client: int
+    goal_enu: Vec3
+    yaw_deg: float | None = None
+
+
 class BridgeLink(msgspec.Struct, frozen=True):
     """One link on which vehicles are, as a bridge counts it."""
 
@@ -574,6 +608,9 @@ Event: TypeAlias = (
     | StateEvent
     | LogEvent
     | Snapshot
+    | History
+    | MissionPath
+    | OperatorGoal
     | BridgeStatus
     | BridgeDecision
     | Trouble

@@ -149,11 +149,12 @@ class Operators:
                 return self._ask(operator, command, autopilot, no_vehicle, now_ns)
             case ipc.Stream():
                 return self._stream(operator, command, no_vehicle, now_ns)
-            case ipc.Pending(goal_enu, _):
+            case ipc.Pending(goal_enu, yaw_deg):
                 if operator != self.control.in_control:
                     return []  # who only looks cannot send it
                 text = f"Keyboard: {plain_enu(goal_enu)}"
-                return [Log(Level.INFO, "keyboard_manager", text)]
+                goal = ipc.OperatorGoal(operator, goal_enu, yaw_deg)
+                return [Log(Level.INFO, "keyboard_manager", text), Emit(goal)]
             case ipc.Leave(reason):
                 return self._leave(operator, reason, now_ns)
             case ipc.Subscribe(names):

@@ -86,6 +86,7 @@ from gcs.session.work import (
 from gcs.station.bridge_port import BridgePort
 from gcs.station.ending import Ending
 from gcs.station.frame_intake import FramesRaisedError, Incoming
+from gcs.station.history import History
 from gcs.station.links import Links
 from gcs.station.operator_lines import line
 from gcs.station.operators import Operators
@@ -164,6 +165,7 @@ class Session:
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
+        self._history = History()
         self._snapshots = 0
         """That were due."""
         self._faults = 0
@@ -371,6 +373,7 @@ class Session:
             case Log():
                 prefix = self._vehicles.prefix(owner)
                 told = announcements.log(item, now_ns, prefix)
+                self._history.logged(item, now_ns, prefix)
                 if self._bridge.open:
                     return [*told, *self._bridge.logged(item, vehicle, now_ns)]
                 return [*told]
@@ -412,7 +415,7 @@ class Session:
                 self._snapshots += 1
                 if left_out and self._snapshots % SNAPSHOTS_A_LOOK != 1:
                     return stops
-                return [Emit(self._snapshot(now_ns)), *stops]
+                return [*self._shown(now_ns), *stops]
             case (
                 Joined()
                 | Lost()
@@ -470,6 +473,7 @@ class Session:
         return [
             Emit(hello(self._setup, self._log_path, fence, operator), operator),
             Emit(self._snapshot(now_ns), operator),
+            *(Emit(event, operator) for event in self._history.told()),
             *self._operators.join(operator, joined.name, joined.hold_on_leave),
         ]
 
@@ -493,6 +497,13 @@ class Session:
             Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)),
             *self._ending.finish(ExitCode.NO_VEHICLE, text),
         ]
+
+    def _shown(self, now_ns: int) -> list[Work]:
+        """What screens are told ten times a second."""
+        seen = self._snapshot(now_ns)
+        self._history.seen(seen)
+        path = self._history.path(self._vehicles.first.missions.path_ned)
+        return [Emit(seen)] if path is None else [Emit(seen), Emit(path)]
 
     def _snapshot(self, now_ns: int) -> ipc.Snapshot:
         first = self._vehicles.first

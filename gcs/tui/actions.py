@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 
@@ -13,9 +14,9 @@ from gcs import ipc, request_words, resources
 from gcs.operator import event_text
 from gcs.operator.client import Listened
 from gcs.operator.line_parser import LineError, parse_line
-from gcs.tui import look
+from gcs.tui import look, map_panel
 from gcs.tui.command_line import CommandLine
-from gcs.tui.keyboard import PendingGoal, VelocityKeys
+from gcs.tui.keyboard import DIRECTIONS, PendingGoal, VelocityKeys
 from gcs.tui.keymap import Keymap
 from gcs.tui.keys import ABORT_IN_A_LINE, ALWAYS
 from gcs.tui.leaving import LeavingApp
@@ -131,16 +132,17 @@ class KeyActions(LeavingApp):
 
     # --------------------------------------------------------------------- keys: send
 
-    def _request(self, request: ipc.Ask, label: str = "") -> int:
-        """Send it under a number of its own, which is returned; `label` as it was typed."""
-        numbered = self.scene.ask(request, label)
+    def _request(self, request: ipc.Ask) -> int:
+        """Send it under a number of its own, which is returned.  Of a file the name is shown."""
+        shown = msgspec.structs.replace(request, path=Path(request.path).name)
+        numbered = self.scene.ask(request, request_words.label(shown))
         if not self._connection.send(numbered):
             self.scene.answer = Answer(f"{request.word}: not sent, the link is down", REFUSED)
         return numbered.id
 
-    def _request_in_turn(self, requests: Sequence[ipc.Ask], label: str = "") -> None:
+    def _request_in_turn(self, requests: Sequence[ipc.Ask]) -> None:
         """Each once the one before is complete; a key that is pressed meanwhile drops the rest."""
-        number = self._request(requests[0], "" if requests[1:] else label)
+        number = self._request(requests[0])
         self._then = {number: requests[1:]} if requests[1:] else {}
 
     def _ended(self, event: ipc.EndingEvent) -> None:
@@ -197,8 +199,28 @@ class KeyActions(LeavingApp):
         self.scene.zoom += by
         self.redraw()
 
+    def action_pan(self, direction: str) -> None:
+        """A quarter of what the map shows."""
+        east, north, _ = DIRECTIONS[direction]
+        size = self.query_one("#map").content_size
+        view = map_panel.view_of(self.scene, size.width, size.height)
+        east_m, north_m = self.scene.pan_en
+        self.scene.pan_en = (
+            east_m + east * view.half_width_m / 2,
+            north_m + north * view.half_height_m / 2,
+        )
+        self.redraw()
+
+    def click_map(self, column: int, row: int) -> None:
+        """The pending goal goes where the map was clicked, at its height."""
+        size = self.query_one("#map").content_size
+        if self.scene.velocity is None and row < size.height - 1:
+            east_m, north_m = map_panel.place(self.scene, size.width, size.height, (column, row))
+            up_m = self.scene.pending.goal_enu[2]
+            self._set_pending(replace(self.scene.pending, goal_enu=(east_m, north_m, up_m)))
+
     def action_fit(self) -> None:
-        self.scene.zoom = 0
+        self.scene.zoom, self.scene.pan_en = 0, (0.0, 0.0)
         self.redraw()
 
     def action_log_level(self) -> None:
@@ -238,7 +260,7 @@ class KeyActions(LeavingApp):
             case None:
                 pass
             case request_words.SendRequests(requests):
-                self._request_in_turn([_with_file(each) for each in requests], text)
+                self._request_in_turn([_with_file(each) for each in requests])
             case request_words.FlyVelocity(v_enu, seconds):
                 self.scene.velocity = VelocityKeys(v_enu, monotonic() + seconds, typed=True)
                 self.action_request("stream_begin")

@@ -10,7 +10,8 @@ from rich.console import RenderableType
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingsMap
 from textual.containers import Horizontal, Vertical
-from textual.events import Resize
+from textual.events import Click, Resize
+from textual.message import Message
 from textual.widget import Widget
 from textual.widgets import Static
 
@@ -18,10 +19,20 @@ from gcs import ipc, resources
 from gcs.operator import event_text
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.station_loss import after_station_died
-from gcs.tui import frame_panels, fsa_panel, height_panel, look, map_panel, vehicle_panel, wind
+from gcs.tui import (
+    decisions_panel,
+    frame_panels,
+    fsa_panel,
+    height_panel,
+    look,
+    map_panel,
+    vehicle_panel,
+    wind,
+)
 from gcs.tui.actions import KeyActions
 from gcs.tui.command_line import CommandLine
 from gcs.tui.completion import Known, modes_of
+from gcs.tui.graphs import Graphs
 from gcs.tui.keymap import DEFAULT, Keymap
 from gcs.tui.log_panel import LogPanel
 from gcs.tui.scene import REFUSED, Answer
@@ -29,6 +40,7 @@ from gcs.tui.scene import REFUSED, Answer
 REDRAW_S = 0.1
 STREAM_S = 0.1
 SMALL_ROWS = 34
+WIDE_COLUMNS = 150
 FOLDED_AFTER_S = 2.0
 
 
@@ -57,6 +69,22 @@ class Panel(Widget):
             self._drawn_for = (self.content_size.width, self.content_size.height)
             self._drawn = self._draw(*self._drawn_for)
         return self._drawn
+
+
+class MapPanel(Panel):
+    """The map, which can be clicked, and zoomed by the wheel."""
+
+    class Clicked(Message):
+        """On a cell of the drawing."""
+
+        def __init__(self, column: int, row: int) -> None:
+            super().__init__()
+            self.column, self.row = column, row
+
+    def on_click(self, event: Click) -> None:
+        at = event.get_content_offset(self)
+        if at is not None:
+            self.post_message(self.Clicked(at.x, at.y))
 
 
 class FlyApp(KeyActions):
@@ -94,14 +122,20 @@ class FlyApp(KeyActions):
 
     def compose(self) -> ComposeResult:
         scene, line = self.scene, CommandLine()
+        graphs = Graphs(scene.numbers)
         yield Panel(lambda columns, _: frame_panels.header(scene, columns), "header")
         yield Panel(lambda columns, _: frame_panels.alarms(scene, columns), "alarms")
         with Horizontal(id="upper"):
-            yield Panel(lambda columns, rows: map_panel.draw(scene, columns, rows), "map", "map")
+            yield MapPanel(lambda columns, rows: map_panel.draw(scene, columns, rows), "map", "map")
             yield Panel(lambda _, rows: height_panel.draw(scene, rows), "height", "up m")
             with Vertical(id="side"):
                 yield Panel(lambda _c, _r: fsa_panel.draw(scene), "fsa", "state")
                 yield Panel(lambda _c, _r: vehicle_panel.draw(scene), "vehicle", "vehicle")
+            with Vertical(id="wide"):
+                yield Panel(graphs.draw, "graphs", "last ten minutes")
+                yield Panel(
+                    lambda *size: decisions_panel.draw(scene, *size), "decided", "decisions"
+                )
         yield Panel(lambda _c, _r: vehicle_panel.goals(scene), "goals")
         yield Panel(lambda _c, _r: vehicle_panel.ahead(scene), "ahead")
         yield Panel(lambda columns, _: vehicle_panel.answer(scene, columns), "answer")
@@ -142,6 +176,16 @@ class FlyApp(KeyActions):
 
     def on_resize(self, event: Resize) -> None:
         self.screen.set_class(event.size.height < SMALL_ROWS, "-small")
+        self.screen.set_class(event.size.width >= WIDE_COLUMNS, "-wide")
+
+    def on_map_panel_clicked(self, clicked: MapPanel.Clicked) -> None:
+        self.click_map(clicked.column, clicked.row)
+
+    def on_mouse_scroll_up(self) -> None:
+        self.action_zoom(-1)
+
+    def on_mouse_scroll_down(self) -> None:
+        self.action_zoom(1)
 
     def redraw(self) -> None:
         """Draw every panel anew from the scene; ring where an alarm wants it."""
@@ -184,6 +228,8 @@ class FlyApp(KeyActions):
                 self.scene.velocity = None
             case ipc.EndingEvent():
                 self._ended(event)
+            case ipc.History(log=lines):
+                self.query_one(LogPanel).before(lines)
             case ipc.Trouble():
                 for line in event_text.trouble_lines(event):
                     self._log_line(line, look.BAD)

@@ -58,6 +58,17 @@ class FlightNumbers:
             speed_m_s = None if seen.v_enu is None else math.hypot(*seen.v_enu)
             self.samples.append(Sample(seen.time_ns, up_m, speed_m_s, seen.battery_pct, in_air))
 
+    def before(self, told: ipc.History) -> None:
+        """What was before this screen was there."""
+        points = [
+            Sample(each.time_ns, each.pos_enu[2], each.speed_m_s, each.battery_pct, each.in_air)
+            for each in told.trail
+        ]
+        until_ns = self.samples[0].time_ns if self.samples else math.inf
+        older = [each for each in points if each.time_ns < until_ns]
+        self.samples = deque([*older, *self.samples], maxlen=SAMPLES)
+        self.air_since_ns = told.in_air_since_ns
+
     def minutes_left(self, down_to_pct: float) -> float | None:
         """Until the charge is down to this, at the use of the last two minutes in the air."""
         if not self.samples or self.samples[-1].battery_pct is None or self.air_since_ns is None:

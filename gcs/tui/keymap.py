@@ -16,6 +16,7 @@ Sections = tuple[tuple[str, tuple[Key, ...]], ...]
 _NAMES: Final = {
     "turn(-15)": "yaw_left",
     "turn(15)": "yaw_right",
+    **{f"pan('{way}')": f"pan_{way}" for way in ("north", "south", "west", "east")},
     "zoom(-1)": "zoom_in",
     "zoom(1)": "zoom_out",
 }
@@ -92,7 +93,7 @@ DEFAULT: Final = Keymap()
 def name_of(key: Key) -> str:
     """Of its action, as a user writes it: `move('north')` is north, `request('abort')` abort."""
     quoted = re.search(r"'(\w+)'", key.action)
-    return quoted[1] if quoted else _NAMES.get(key.action, key.action)
+    return _NAMES.get(key.action, quoted[1] if quoted else key.action)
 
 
 ACTIONS: Final = tuple(name_of(key) for key in DEFAULT.keys)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,6 +13,8 @@ from rich.text import Text
 from textual.events import Resize
 from textual.widgets import RichLog
 
+from gcs import ipc
+from gcs.operator import event_text
 from gcs.tui import look
 
 LOG_LINES: Final = 2000
@@ -61,6 +64,11 @@ class LogPanel(RichLog):
         self.tell_folded()
         self._like = like
         self._add(stamp, text, style, level)
+
+    def before(self, lines: Iterable[ipc.LogEvent]) -> None:
+        """What was said before this screen was there."""
+        for line in lines:
+            self.tell(event_text.log_line(line), look.LEVEL[line.level], line.level, line.time_ns)
 
     def tell_folded(self) -> None:
         """Say now how often the last line has come again."""

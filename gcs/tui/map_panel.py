@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rich.text import Text
 
 from gcs.tui import look
@@ -12,6 +14,8 @@ from gcs.tui.view import View, fit, nice_length, outline
 
 ARROWS = "↑↗→↘↓↙←↖"
 HOME, PENDING, ACTIVE = "⌂", "◇", "◉"
+OTHERS = "◆"
+"""What the operator in control has in mind, for those who look on."""
 REFUSED = "✗"
 """The pending goal that the gate would refuse."""
 OFF_EVERY = 5
@@ -25,16 +29,19 @@ def draw(scene: Scene, columns: int, rows: int) -> Text:
     if columns < 8 or rows < 4:
         return Text("")
     canvas = Canvas(columns, rows - 1)
-    view = _view(scene, canvas)
+    view = view_of(scene, columns, rows)
     _grid(canvas, view)
     for zone in scene.zones:
         style = look.FENCE if zone.inclusion else look.NO_FLY
         every = (1 if zone.inclusion else 2) if scene.fence_on else OFF_EVERY
         canvas.path([view.dots(e, n) for e, n in outline(zone)], style, every=every)
+    canvas.path([view.dots(e, n) for e, n, _ in scene.path_enu], look.MISSION, every=2)
     canvas.path([view.dots(e, n) for e, n, _ in scene.trail], look.TRAIL)
     _markers(canvas, view, scene)
     _scale(canvas, view)
-    return Text.assemble(canvas.render(), "\n", _legend(columns), end="", no_wrap=True)
+    return Text.assemble(
+        canvas.render(), "\n", _legend(columns, mission=bool(scene.path_enu)), end="", no_wrap=True
+    )
 
 
 def arrow(yaw_deg: float) -> str:
@@ -42,7 +49,18 @@ def arrow(yaw_deg: float) -> str:
     return ARROWS[round(yaw_deg / 45.0) % 8]
 
 
-def _view(scene: Scene, canvas: Canvas) -> View:
+def place(scene: Scene, columns: int, rows: int, at: tuple[int, int]) -> tuple[float, float]:
+    """East and north of a cell of the map, to the decimetre."""
+    view = view_of(scene, columns, rows)
+    x, y = 2 * at[0] + 1, 4 * at[1] + 2
+    east_m = view.centre_en[0] + (x - view.width / 2) * view.m_per_dot
+    north_m = view.centre_en[1] - (y - view.height / 2) * view.m_per_dot
+    return (round(east_m, 1) + 0.0, round(north_m, 1) + 0.0)
+
+
+def view_of(scene: Scene, columns: int, rows: int) -> View:
+    """What the map in so many cells shows, the legend's row left out."""
+    width, height = 2 * columns, 4 * (rows - 1)
     seen = scene.snapshot
     points = [scene.pending.goal_enu[:2]]
     centre = (0.0, 0.0)
@@ -51,7 +69,10 @@ def _view(scene: Scene, canvas: Canvas) -> View:
         points += [point[:2] for point in known if point is not None]
         centre = seen.home_enu[:2] if seen.home_enu is not None else centre
     points += _small_fence(scene)
-    return fit(centre, points, canvas.width, canvas.height, scene.zoom)
+    points += [point[:2] for point in scene.path_enu]
+    fitting = fit(centre, points, width, height, scene.zoom)
+    middle_en = (centre[0] + scene.pan_en[0], centre[1] + scene.pan_en[1])
+    return replace(fitting, centre_en=middle_en)
 
 
 def _small_fence(scene: Scene) -> list[tuple[float, float]]:
@@ -86,6 +107,8 @@ def _markers(canvas: Canvas, view: View, scene: Scene) -> None:
         if seen is not None and seen.pos_enu is not None:
             canvas.line(view.dots(*seen.pos_enu[:2]), goal, look.ACTIVE, every=3)
         canvas.glyph(*goal, ACTIVE, look.ACTIVE)
+    if scene.other_goal is not None and not scene.in_control:
+        canvas.glyph(*view.dots(*scene.other_goal.goal_enu[:2]), OTHERS, look.PENDING)
     ahead = scene.ahead.of(scene.pending.goal)
     mark = REFUSED if ahead is Ahead.REFUSED else PENDING
     canvas.glyph(*view.dots(*scene.pending.goal_enu[:2]), mark, look.AHEAD[ahead])
@@ -104,12 +127,13 @@ def _scale(canvas: Canvas, view: View) -> None:
     canvas.text(canvas.columns - 1, canvas.rows // 2, "E", look.DIM)
 
 
-def _legend(columns: int) -> Text:
+def _legend(columns: int, *, mission: bool) -> Text:
     parts = (
         ("↑", look.VEHICLE, "vehicle"),
         (PENDING, look.PENDING, "pending"),
         (ACTIVE, look.ACTIVE, "active"),
         (HOME, look.HOME, "home"),
+        *([("┄", look.MISSION, "mission")] if mission else []),
         ("─", look.FENCE, "fence"),
         ("╌", look.NO_FLY, "no-fly"),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from gcs import ipc
 from gcs.gate.states import LandedState, State
@@ -18,6 +19,7 @@ from gcs.tui.wind import Wind, wind_of
 
 TRAIL_POINTS = 800
 TRAIL_STEP_M = 0.1
+DECISIONS = 50
 COMPLETE = "complete"
 REFUSED = "refused"
 ACCEPTED = "accepted"
@@ -35,6 +37,14 @@ class Answer:
     given_ns: int = 0  # on the clock of the snapshots
 
 
+class Decision(NamedTuple):
+    """One verdict or ending, for the list of them on a wide screen."""
+
+    time_ns: int
+    text: str
+    kind: str
+
+
 @dataclass(slots=True)
 class Scene:
     """Updated with the station's events; read by the panels ten times a second."""
@@ -50,7 +60,11 @@ class Scene:
     last_move: ipc.StateEvent | None = None
     answer: Answer = field(default_factory=Answer)
     progress: ipc.ProgressEvent | None = None
+    path_enu: list[ipc.Vec3] = field(default_factory=list)  # of the mission on board
+    other_goal: ipc.OperatorGoal | None = None  # of the operator who is in control, if not this one
+    decisions: deque[Decision] = field(default_factory=lambda: deque(maxlen=DECISIONS))
     zoom: int = 0
+    pan_en: tuple[float, float] = (0.0, 0.0)  # metres, of the map's middle
     numbers: FlightNumbers = field(default_factory=FlightNumbers)
     wind: Wind | None = None
     fence_on: bool = True
@@ -129,6 +143,12 @@ class Scene:
                 self.numbers.seen(event)
             case ipc.StateEvent():
                 self.last_move = event
+            case ipc.History():
+                self._note_history(event)
+            case ipc.MissionPath(points_enu):
+                self.path_enu = points_enu
+            case ipc.OperatorGoal():
+                self.other_goal = None if event.client == self.talk.number else event
             case ipc.MessageEvent():
                 self.wind = wind_of(event, self.wind)
             case ipc.VerdictEvent():
@@ -153,12 +173,14 @@ class Scene:
 
     def _show_answer(self, label: str, kind: str, code: str, sentence: str) -> None:
         """A refusal stays until the next key, whatever else ends meanwhile."""
+        line = event_text.answer_line(label, kind, code, sentence)
+        self.decisions.append(Decision(self.now_ns, line, kind))
         if kind == REFUSED:
             self._key_since_refusal = False
             why = event_text.reason(kind, code, sentence)
             text = f"refused {code} {label}: {why}" if why else f"refused {code} {label}"
         elif self._key_since_refusal or self.answer.kind != REFUSED:
-            text = event_text.answer_line(label, kind, code, sentence)
+            text = line
         else:
             return
         self.answer = Answer(text, kind, self.now_ns)
@@ -188,6 +210,12 @@ class Scene:
         words = control_text.change_words(before.in_control, now.in_control, self.talk.number)
         if words:
             self.answer = Answer(words, TAKEN_OVER, now.time_ns)
+
+    def _note_history(self, before: ipc.History) -> None:
+        """What was before this operator has joined."""
+        for point in before.trail:
+            self._leave_trail(point.pos_enu)
+        self.numbers.before(before)
 
     def _leave_trail(self, pos_enu: ipc.Vec3 | None) -> None:
         if pos_enu is None:

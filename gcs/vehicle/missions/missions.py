@@ -10,6 +10,7 @@ from typing import Final
 
 from gcs import ipc
 from gcs.bridge.client_plan import ClientPlan
+from gcs.frames import Vec3
 from gcs.gate.effects import Level
 from gcs.gate.inputs import Input, MissionLoaded, MissionSeen, OperatorLost, Requested
 from gcs.gate.machine.events import Event, event_of
@@ -102,6 +103,7 @@ class Missions:
         self.job: Job | None = None
         """The one that is under way."""
         self._on_board: OnBoard | None = None
+        self._path_ned: tuple[Vec3, ...] = ()
         self._begin_seq: int | None = None
         """The item at which the next start in the air begins, where one was asked for."""
         self._left = False
@@ -122,6 +124,11 @@ class Missions:
     def items(self) -> int:
         """Of the verified mission on board; 0 where there is none."""
         return 0 if self._on_board is None else len(self._on_board.sent)
+
+    @property
+    def path_ned(self) -> tuple[Vec3, ...]:
+        """Of the verified mission on board, as it is flown."""
+        return () if self._on_board is None else self._path_ned
 
     @property
     def land_starts(self) -> tuple[int, ...]:
@@ -343,6 +350,7 @@ class Missions:
         for item in job_work:
             if isinstance(item, OnBoardChanged):
                 self._on_board, self._begin_seq = item.on_board, None
+                self._path_ned = item.path_ned
                 self._told.learn_anew()
                 self._told.forget_refused()
                 if item.on_board is not None:

@@ -45,12 +45,16 @@ def holds(script: Script) -> int:
 class TestWhoIsTold:
     def test_one_that_joins_is_told_where_everything_stands(self) -> None:
         script = Script().met()
-        hello, snapshot, operators = to(SECOND, join(script))
+        hello, snapshot, history, operators = to(SECOND, join(script))
         assert isinstance(hello, ipc.Hello)
         assert (hello.client, hello.schema, hello.log_path) == (SECOND, 1, "logs/a.mcap")
         assert [zone.name for zone in hello.fence] == ["home"]
         assert isinstance(snapshot, ipc.Snapshot)
         assert snapshot.state == "GROUNDED"
+        assert isinstance(history, ipc.History)
+        assert history.trail[-1].pos_enu == snapshot.pos_enu
+        assert "Current State: GROUNDED" in [line.text for line in history.log]
+        assert history.in_air_since_ns is None
         names = [ipc.OperatorInfo(1, "first operator"), ipc.OperatorInfo(SECOND, "test 2")]
         assert operators == ipc.Operators(names, 1)
 

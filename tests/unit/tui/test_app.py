@@ -496,3 +496,28 @@ def test_what_the_station_said_before_the_screen_is_on_it() -> None:
         return app
 
     assert asyncio.run(run()).scene.zones
+
+
+def test_a_click_on_the_map_sets_the_pending_goal_there_at_its_height() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        await drawn(app, pilot)
+        await pilot.click("#map", offset=(50, 5))
+        await pilot.pause()
+        east_m, north_m, up_m = app.scene.pending.goal_enu
+        assert east_m > 0.0
+        assert north_m > 0.0
+        assert up_m == 0.5
+        assert station.sent == [ipc.Pending((east_m, north_m, up_m))]
+
+    flown(script)
+
+
+def test_the_map_is_panned_and_z_shows_all_again() -> None:
+    async def script(app: FlyApp, _station: ListeningStation, pilot: Pilot[None]) -> None:
+        await pilot.press("shift+right", "shift+up")
+        assert app.scene.pan_en[0] > 0.0
+        assert app.scene.pan_en[1] > 0.0
+        await pilot.press("z")
+        assert app.scene.pan_en == (0.0, 0.0)
+
+    flown(script)

@@ -11,13 +11,23 @@ from hypothesis import strategies as st
 
 from gcs import ipc
 from gcs.gate.states import State
-from gcs.tui import fsa_panel, height_panel, look, map_panel, vehicle_panel
+from gcs.tui import (
+    decisions_panel,
+    flight_numbers,
+    fsa_panel,
+    height_panel,
+    look,
+    map_panel,
+    vehicle_panel,
+)
 from gcs.tui.braille import Canvas, clip
 from gcs.tui.frame_panels import footer, header
+from gcs.tui.graphs import Graphs
 from gcs.tui.keyboard import PendingGoal
 from gcs.tui.keymap import DEFAULT
 from gcs.tui.scene import Scene
 from gcs.tui.view import HALF_SPANS_M, fit, nice_length, outline
+from gcs.tui.wind import wind_of
 from tests.unit.operator.fake_station import FakeStation
 
 metres = st.floats(-1e4, 1e4)
@@ -320,3 +330,113 @@ def test_the_footer_fits_two_lines_of_eighty() -> None:
 def test_no_key_is_bound_twice() -> None:
     names = [name for key in DEFAULT.keys for name in key.names]
     assert len(names) == len(set(names))
+
+
+def path_dots(scene: Scene, *, style: str) -> int:
+    picture = map_panel.draw(scene, 60, 20)
+    map_end = picture.plain.rindex("\n")
+    spans = [span for span in picture.spans if span.style == style and span.end <= map_end]
+    return sum(span.end - span.start for span in spans)
+
+
+def test_the_path_of_the_mission_is_drawn_and_gone_with_it() -> None:
+    scene = scene_at((0.0, 0.0, 2.0))
+    scene.update(ipc.MissionPath([(0.0, 0.0, 5.0), (10.0, 0.0, 5.0), (10.0, 10.0, 5.0)]))
+    assert path_dots(scene, style=look.MISSION) > 10
+    assert "mission" in map_panel.draw(scene, 60, 20).plain.splitlines()[-1]
+    scene.update(ipc.MissionPath([]))
+    assert path_dots(scene, style=look.MISSION) == 0
+
+
+def test_whoever_joins_sees_the_way_that_was_flown_before() -> None:
+    flown = [
+        ipc.TrailPoint(n * 10**9, (n / 10, 0.0, 2.0), 0.1, 90.0 - n / 20, in_air=True)
+        for n in range(60)
+    ]
+    scene = Scene()
+    for event in [
+        *FakeStation().hello(),
+        ipc.History(flown, [], in_air_since_ns=0),
+        msgspec.structs.replace(
+            FakeStation().snapshot(), time_ns=61 * 10**9, armed=True, landed="IN_AIR"
+        ),
+    ]:
+        scene.update(event)
+    assert path_dots(scene, style=look.TRAIL) > 3
+    assert scene.numbers.flown_ns == 61 * 10**9
+    assert scene.numbers.samples[0].battery_pct == 90.0
+
+
+def test_what_the_operator_in_control_has_in_mind_is_shown_to_those_who_look_on() -> None:
+    scene = controlled_by(OTHER)
+    scene.update(ipc.OperatorGoal(2, (1.5, -1.0, 2.0)))
+    assert map_panel.OTHERS in map_panel.draw(scene, 60, 20).plain
+    mine = controlled_by(ipc.OperatorInfo(1, "gcs fly"))
+    mine.update(ipc.OperatorGoal(1, (1.5, -1.0, 2.0)))
+    assert map_panel.OTHERS not in map_panel.draw(mine, 60, 20).plain
+
+
+@pytest.mark.parametrize("pan_en", [(0.0, 0.0), (0.3, -0.2)])
+def test_a_cell_of_the_map_is_the_place_that_is_drawn_in_it(pan_en: tuple[float, float]) -> None:
+    scene = scene_at((0.0, 0.0, 2.0))
+    scene.pan_en = pan_en
+    east_m, north_m = map_panel.place(scene, 60, 20, (40, 7))
+    scene.pending = PendingGoal((east_m, north_m, 2.0))
+    scene.zoom = 0
+    row = map_panel.draw(scene, 60, 20).plain.splitlines()[7]
+    assert row.index(map_panel.PENDING) == pytest.approx(40, abs=1)
+
+
+def test_graphs_and_decisions_fill_a_wide_screen() -> None:
+    scene = scene_at((0.0, 0.0, 2.0))
+    assert scene.snapshot is not None
+    for n in range(30):
+        later = msgspec.structs.replace(scene.snapshot, time_ns=(n + 1) * 10**9)
+        scene.update(later)
+    scene.update(ipc.VerdictEvent(1, "goto", "refused", "OUTSIDE_FENCE", "350.0 m too far"))
+    graphs = Graphs(scene.numbers).draw(60, 36).plain
+    for name in ("height, m", "speed, m/s", "battery, %"):
+        assert name in graphs
+    assert (
+        "goto: refused OUTSIDE_FENCE: 350.0 m too far" in decisions_panel.draw(scene, 70, 8).plain
+    )
+
+
+@pytest.mark.parametrize(
+    ("event", "words"),
+    [
+        (
+            ipc.MessageEvent("WIND_COV", 0, 1, 1, {"wind_x": 0.0, "wind_y": 6.0}),
+            "6.0 m/s from 270°",
+        ),
+        (ipc.MessageEvent("WIND", 0, 1, 1, {"speed": 6.0, "direction": 90.0}), "6.0 m/s from 090°"),
+    ],
+)
+def test_the_wind_is_told_with_where_it_comes_from(event: ipc.MessageEvent, words: str) -> None:
+    wind = wind_of(event, None)
+    assert wind is not None
+    assert wind.words(0) == words
+    assert wind.words(6 * 10**9) == "-"
+
+
+def test_the_fence_is_as_far_as_its_nearest_side_or_ceiling() -> None:
+    circle = ipc.FenceShape("c", True, centre_en=(0.0, 0.0), radius_m=50.0, ceiling_up_m=10.0)
+    tower = ipc.FenceShape("t", False, corners_en=[(20, -5), (30, -5), (30, 5), (20, 5)])
+    assert flight_numbers.fence_m([circle], (0.0, 0.0, 2.0)) == pytest.approx(8.0)
+    assert flight_numbers.fence_m([circle, tower], (17.0, 0.0, 2.0)) == pytest.approx(3.0)
+    assert flight_numbers.fence_m([circle], (60.0, 0.0, 2.0)) == pytest.approx(-10.0)
+    assert flight_numbers.fence_m([], (0.0, 0.0, 0.0)) is None
+
+
+def test_minutes_left_are_those_of_the_use_in_the_air() -> None:
+    numbers = flight_numbers.FlightNumbers()
+    seen = msgspec.structs.replace(FakeStation().snapshot(), armed=True, landed="IN_AIR")
+    for second in range(61):
+        numbers.seen(
+            msgspec.structs.replace(
+                seen, time_ns=second * 10**9, battery_pct=80.0 - second * 10.0 / 60.0
+            )
+        )
+    # 10 % a minute, 70 % are left, 20 % are to stay.
+    assert numbers.minutes_left(20.0) == pytest.approx(5.0)
+    assert flight_numbers.FlightNumbers().minutes_left(20.0) is None

@@ -108,7 +108,7 @@ class BringMission(PreparedJob, BringingJob):
         if self._flown is not None:
             points = tuple(dict.fromkeys(end for leg in self._flown.segments for end in leg))
             work += [
-                OnBoardChanged(on_board(plan, prepared.sent)),
+                OnBoardChanged(on_board(plan, prepared.sent), points),
                 Record(MissionItem(plan.name, points)),
                 GateInput(MissionLoaded(plan.name, len(plan.items))),
             ]

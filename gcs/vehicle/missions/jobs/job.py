@@ -17,6 +17,7 @@ from typing import TypeAlias
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
+from gcs.frames import Vec3
 from gcs.gate.effects import Level, Outcome, OutcomeKind, Ruling
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
@@ -75,6 +76,7 @@ class OnBoardChanged:
     """The mission that we know to be on board is now this one, or none."""
 
     on_board: OnBoard | None
+    path_ned: tuple[Vec3, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -82,7 +82,7 @@ class Adopt(PreparedJob, StartingJob):
         plan = self.prepared.plan
         points = tuple(dict.fromkeys(end for leg in found.path.segments for end in leg))
         return [
-            OnBoardChanged(on_board(plan, self._received)),
+            OnBoardChanged(on_board(plan, self._received), points),
             Record(MissionItem(plan.name, points)),
             GateInput(MissionLoaded(plan.name, len(plan.items))),
             *self.begin_at(None, self._received, view, now_ns),

@@ -1,0 +1,74 @@
+"""What has been told so far, for an operator who joins: the trail, the latest lines of the log, and
+the path of the mission on board.  All of it bounded."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Final
+
+from gcs import ipc
+from gcs.frames import Vec3, enu_from_ned
+from gcs.gate.effects import Level
+from gcs.gate.states import LandedState
+from gcs.report import LogEvent
+from gcs.session.work import Log
+
+POINT_NS: Final = 1_000_000_000
+POINTS: Final = 600
+"""Ten minutes, one a second."""
+LINES: Final = 200
+PATH_POINTS: Final = 1_000
+"""Of a longer path every second, third ... point is told."""
+
+
+_NOT_IN_AIR: Final = ("", LandedState.UNDEFINED.name, LandedState.ON_GROUND.name)
+
+
+class History:
+    """Of the vehicle that operators' screens show."""
+
+    def __init__(self) -> None:
+        self._trail: deque[ipc.TrailPoint] = deque(maxlen=POINTS)
+        self._lines: deque[LogEvent] = deque(maxlen=LINES)
+        self._path_ned: tuple[Vec3, ...] = ()
+        self._air_since_ns: int | None = None
+
+    def logged(self, line: Log, now_ns: int, prefix: str) -> None:
+        """`prefix` names the vehicle that it is of."""
+        if line.level > Level.DEBUG:
+            self._lines.append(LogEvent(now_ns, int(line.level), line.node, prefix + line.text))
+
+    def seen(self, seen: ipc.Snapshot) -> None:
+        """A snapshot that operators are told."""
+        in_air = seen.armed is True and seen.landed not in _NOT_IN_AIR
+        if not in_air:
+            self._air_since_ns = None
+        elif self._air_since_ns is None:
+            self._air_since_ns = seen.time_ns
+        if seen.pos_enu is None:
+            return
+        if self._trail and seen.time_ns - self._trail[-1].time_ns < POINT_NS:
+            return
+        east_m, north_m, up_m = (round(metres, 2) for metres in seen.pos_enu)
+        speed_m_s = None if seen.v_enu is None else round(math.hypot(*seen.v_enu), 2)
+        place = (east_m, north_m, up_m)
+        point = ipc.TrailPoint(seen.time_ns, place, speed_m_s, seen.battery_pct, in_air)
+        self._trail.append(point)
+
+    def path(self, path_ned: tuple[Vec3, ...]) -> ipc.MissionPath | None:
+        """The path of the verified mission on board, where it is another one than before."""
+        if path_ned is self._path_ned:
+            return None
+        self._path_ned = path_ned
+        return self._told_path()
+
+    def told(self) -> list[ipc.Event]:
+        """For one that has just joined."""
+        trail = ipc.History([*self._trail], [*self._lines], self._air_since_ns)
+        return [trail, self._told_path()] if self._path_ned else [trail]
+
+    def _told_path(self) -> ipc.MissionPath:
+        every = 1 + len(self._path_ned) // PATH_POINTS
+        kept = [*self._path_ned[::every], *self._path_ned[-1:]] if every > 1 else self._path_ned
+        return ipc.MissionPath([enu_from_ned(point) for point in kept])
