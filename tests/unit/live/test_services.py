@@ -18,7 +18,7 @@ from gcs.live.services import (
     request_of,
     schema_of,
 )
-from gcs.request_words import ALWAYS_HEARD
+from gcs.request_words import ALWAYS_HEARD, REQUESTS, Doer
 from gcs.session.requests import request_of as gate_request_of
 
 AT = ipc.Snapshot(
@@ -77,9 +77,11 @@ def test_every_service_asks_for_what_the_station_knows() -> None:
 def test_a_viewer_that_looks_may_ask_for_what_the_station_hears_of_anyone() -> None:
     """And for nothing more: a word that needs control would be given control where nobody has it.
     `disarm` is no service, giving control back neither, and taking it, landing and returning, which
-    move the vehicle, need the code."""
+    move the vehicle, need the code.  What reads a vehicle's parameters, files and logs is no
+    service either."""
     anyone = {service.word for service in SERVICES.values() if service.anyone}
-    assert anyone == ALWAYS_HEARD - {"disarm", "station_release", "land", "rtl"}
+    readers = {name for name, word in REQUESTS.items() if word.doer is Doer.READER}
+    assert anyone == ALWAYS_HEARD - readers - {"disarm", "station_release", "land", "rtl"}
 
 
 def test_the_height_is_the_parameter_s_where_it_is_set() -> None:

@@ -330,3 +330,28 @@ def test_every_public_method_says_what_it_does() -> None:
         error = getattr(gcs, name)
         if isinstance(error, type) and issubclass(error, Exception):
             assert issubclass(error, gcs.GcsError)
+
+
+class OfParameters(FakeStation):
+    """A vehicle with two parameters."""
+
+    def _asked(self, ask: ipc.Ask, now_s: float) -> list[ipc.Event]:
+        held = [ipc.Parameter("RTL_ALT", 15.5, "real32"), ipc.Parameter("RTL_TYPE", 1, "int32")]
+        told = [each for each in held if ask.name in ("", each.name)]
+        if not told:
+            return self._refuse(ask, "BAD_PARAMETER", "no such parameter; near: RTL_ALT")
+        return self._quick(ask, self.state, ipc.ParametersEvent(ask.id, told))
+
+
+def test_parameters_are_read_by_name_and_set() -> None:
+    way = FakeWay()
+    way.station = OfParameters()
+    with gcs.Station(way) as station:
+        assert station.parameters() == {"RTL_ALT": 15.5, "RTL_TYPE": 1}
+        assert station.parameter("RTL_TYPE") == 1
+        assert station.set_parameter("RTL_ALT", 20).state == "complete"
+        with pytest.raises(gcs.Refused, match="near: RTL_ALT") as refused:
+            station.parameter("RTL_ALTT")
+    assert refused.value.code == "BAD_PARAMETER"
+    words = [(ask.word, ask.name, ask.value) for ask in way.sent if isinstance(ask, ipc.Ask)]
+    assert words[2] == ("param_set", "RTL_ALT", 20.0)
