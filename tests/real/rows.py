@@ -175,10 +175,12 @@ def cuts() -> list[Row]:
     cut = [
         Row("cut", direction=direction, leg_m=160.0, goal_m=97.8, radius_m=100.0, ceiling_m=50.0,
             figure=speed, when=before_m)
-        for before_m, direction in zip((60.0, 45.0, 38.0, 32.0, 26.0), EIGHT, strict=False)
+        for before_m, direction in zip((45.0, 38.0, 60.0, 32.0, 26.0), EIGHT, strict=False)
         for speed in (0.0, 10.0)
+        if not speed or before_m > 35.0  # nearer, the gate has slowed it down
     ]  # fmt: skip
-    return [*cut[2:6], *(replace(row, word="put") for row in cut)]
+    through = replace(cut[1], kind="stranger", direction="S", when=0.0)
+    return [through, *cut[:4], *(replace(row, word="put") for row in cut)]
 
 
 def missions() -> list[Row]:

@@ -422,6 +422,39 @@ def cut(flight: Flight, row: Row) -> Told:
     return text, "" if was else text
 
 
+def stranger(flight: Flight, row: Row) -> Told:
+    """Somebody flies it at full speed through the fence that was put on board, past the gate: how
+    far out the vehicle's own breach action lets it come is told, and the vehicle is taken home."""
+    flight.on_ground(row)
+    observer, station = flight.observer, flight.library(row).station
+    put = outcome_of(lambda: station.put_fence(timeout_s=60.0))
+    if put != "complete":
+        return put, put
+    if row.word:
+        observer.set(row.word, 1.0, integer=True)
+    flight.in_air_at(row, row.start)
+    flight.leave()
+    first, began = len(observer.flown_from_home), time.monotonic()
+    east, north, _ = (row.figure * u for u in row.unit)
+    modes: list[int] = []
+    while time.monotonic() - began < 30.0:
+        observer.mavlink.mav.set_position_target_local_ned_send(
+            0, 1, 1, 1, 0b110111000111, 0, 0, 0, north, east, 0, 0, 0, 0, 0, 0
+        )
+        if time.monotonic() - began < 3.0:
+            observer.mode(flight.kind.guided_custom_mode)
+        if not modes or modes[-1] != observer.custom_mode:
+            modes.append(observer.custom_mode)
+        time.sleep(0.05)
+    out_m = -min(row.clearance_m(place) for place in observer.flown_from_home[first:])
+    top = max(sample.speed_m_s for sample in observer.truth.samples[first:])
+    flight.marks = None
+    observer.at_rest(20.0)
+    if flight.flying:
+        observer.fly_to((0.0, 0.0, HEIGHT_M), 90.0)
+    return f"{out_m:.1f} m out at most, {top:.1f} m/s, modes {[hex(mode) for mode in modes]}", ""
+
+
 KINDS: dict[str, Callable[[Flight, Row], Told]] = {
     "approach": approach,
     "stop": stop,
@@ -433,4 +466,5 @@ KINDS: dict[str, Callable[[Flight, Row], Told]] = {
     "hostile": hostile,
     "plans": plans,
     "cut": cut,
+    "stranger": stranger,
 }
