@@ -20,7 +20,7 @@ lines and one-shot commands alike become `Ask`.
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Annotated, TypeAlias
 
 import msgspec
 from msgspec import DecodeError as DecodeError
@@ -34,6 +34,10 @@ SCHEMA = 1
 
 Maybe3 = tuple[float | None, float | None, float | None]
 """JSON has no NaN: what was typed as nan or inf travels as null and is refused by the gate."""
+
+
+Lease = Annotated[float, msgspec.Meta(gt=0.0, le=86_400.0)]
+"""Seconds, more than 0 and at most a day."""
 
 
 class Circle(msgspec.Struct, frozen=True, omit_defaults=True):
@@ -86,6 +90,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
     vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
     orbit: Circle | None = None  # orbit
+    lease_s: Lease | None = None  # aborted unless a `renew` comes within so long; null: no lease
 
 
 class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_defaults=True):
@@ -161,6 +166,22 @@ class Check(msgspec.Struct, frozen=True, tag="check", tag_field="type"):
     asked: Ask  # its `id` comes back
 
 
+class Renew(msgspec.Struct, frozen=True, tag="renew", tag_field="type"):
+    """The operator who asked for an operation still looks at it: its lease begins anew.
+
+    Where none comes in time, the station aborts the operation, within a second.  It has no answer;
+    for an operation that has ended, or of somebody else, nothing is done.
+    """
+
+    operation: int
+
+
+class Note(msgspec.Struct, frozen=True, tag="note", tag_field="type"):
+    """What this operator's program has done or was told, in words: recorded and logged, no more."""
+
+    text: str
+
+
 class WatchTopics(msgspec.Struct, frozen=True, tag="watch_topics", tag_field="type"):
     """From now on tell me of everything that goes into the record, as the topics of its file.
 
@@ -170,7 +191,17 @@ class WatchTopics(msgspec.Struct, frozen=True, tag="watch_topics", tag_field="ty
 
 
 Command: TypeAlias = (
-    Ask | Stream | Pending | Leave | Join | Subscribe | ListOperations | Check | WatchTopics
+    Ask
+    | Stream
+    | Pending
+    | Leave
+    | Join
+    | Subscribe
+    | ListOperations
+    | Check
+    | Renew
+    | Note
+    | WatchTopics
 )
 
 

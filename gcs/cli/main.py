@@ -39,6 +39,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         ),
         "fly": Entry("gcs.cli.fly:fly", "The keyboard ground station, or --plain lines."),
         "bridge": Entry("gcs.cli.bridge.bridge:bridge", "MAVLink clients fly it through the gate."),
+        "mcp": Entry("gcs.cli.mcp.mcp:mcp", "An agent flies it through the gate (MCP)."),
         "live": Entry("gcs.cli.live:live", "The flight in a viewer such as Foxglove, as it flies."),
     },
     "One command, then leave": {

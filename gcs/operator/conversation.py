@@ -6,6 +6,7 @@ Whoever talks with a station keeps one of these: typed lines, one-shot commands 
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -18,6 +19,8 @@ from gcs.gate.states import LandedState, State
 from gcs.operator.client import StationEnded, StationEvent
 from gcs.operator.errors import ExitError
 from gcs.operator.station_loss import after_station_died, record_hint
+
+KEPT_LINES = 200
 
 _EXIT_CODE_OF_REFUSAL: dict[str, ExitCode] = {
     Code.NO_VEHICLE: ExitCode.NO_VEHICLE,
@@ -78,6 +81,7 @@ class Conversation:
         self._last_id = 0
         self._open: dict[int, TrackedRequest] = {}
         self.hello: ipc.Hello | None = None
+        self.fence: list[ipc.FenceShape] = []
         self.snapshot: ipc.Snapshot | None = None
         self.bridge: ipc.BridgeStatus | None = None
         self.operators: ipc.Operators | None = None
@@ -85,6 +89,7 @@ class Conversation:
         self.operations: dict[int, ipc.Operation] | None = None
         """Of all operators; None before they were asked for."""
         self.checked: ipc.Checked | None = None
+        self.lines: deque[ipc.LogEvent] = deque(maxlen=KEPT_LINES)
         self.trouble: ipc.Trouble | None = None
         self.ended: StationEnded | None = None
 
@@ -131,6 +136,9 @@ class Conversation:
                 return tracked
             case ipc.Hello():
                 self.hello = event
+                self.fence = event.fence
+            case ipc.Fences(zones):
+                self.fence = zones
             case ipc.Snapshot():
                 self.snapshot = event
             case ipc.BridgeStatus():
@@ -145,6 +153,8 @@ class Conversation:
                 self.operations = {each.id: each for each in operations}
             case ipc.Operation() if self.operations is not None:
                 self.operations[event.id] = event
+            case ipc.LogEvent():
+                self.lines.append(event)
             case ipc.Trouble():
                 self.trouble = event
             case StationEnded():

@@ -43,6 +43,11 @@ class Operation:
         return "running" if self._tracked.outcome is None else self._tracked.outcome.ended
 
     @property
+    def ending(self) -> ipc.EndingEvent | None:
+        """How it ended; None while it is under way."""
+        return self._tracked.outcome
+
+    @property
     def found(self) -> list[Found]:
         """What was read for it."""
         return self._tracked.found

@@ -35,16 +35,19 @@ from gcs.session.work import (
     TellOperator,
     Work,
 )
+from gcs.station.leases import Leases
 from gcs.station.operations import Operations
 from gcs.station.operator_control import NOBODY, OperatorControl
 from gcs.station.streams import BEGIN, Streams
 from gcs.station.subscriptions import Subscriptions
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.wire.messages import CommandLong
+from gcs.wire.text import clean
 
 NODE = "link"
 LOGGED_LETTERS = 40
 """Of a word that may be anything; all operators read the log."""
+NOTED_LETTERS = 500
 
 
 class Operators:
@@ -55,6 +58,7 @@ class Operators:
         self.control = OperatorControl(setup.config.operator, first_looks=setup.config.bridge)
         self._requests = Requests()
         self._operations = Operations()
+        self._leases = Leases(times)
         self.subscriptions = Subscriptions(times)
         self._streams = Streams()
 
@@ -163,6 +167,14 @@ class Operators:
                 return [Emit(ipc.OperationList(number, self._operations.listed()), operator)]
             case ipc.Check():
                 return []  # `operator_lines.py` answers it: no part of an operator's is asked
+            case ipc.Renew(number):
+                operation = self._operations.get(number)
+                if operation is not None and operation.client == operator:
+                    self._leases.renew(number, now_ns)
+                return []
+            case ipc.Note(text):
+                noted = f"{self.control.name(operator)}: {clean(text[:NOTED_LETTERS])}"
+                return [Log(Level.INFO, NODE, noted)]
             case ipc.WatchTopics():
                 return [ShowTopics(operator)]
             case ipc.Join():
@@ -323,12 +335,14 @@ class Operators:
             requests.close(request_id)
             return work
         begun = self._operations.begin(request_id, asked.ask, asked.operator, name, now_ns)
+        self._leases.begin(request_id, asked.ask.lease_s, now_ns)
         return [*work, Emit(begun)]
 
     def outcome(self, told: Outcome, sysid: int, now_ns: int) -> list[Work]:
         """The same, of how it ended."""
         asked = self._requests.close(told.request_id)
         ended = self._operations.end(told, now_ns)
+        self._leases.end(told.request_id)
         return [*announcements.outcome(told, asked, sysid), Emit(ended)]
 
     def stream_verdict(self, told: StreamVerdict, sysid: int, now_ns: int) -> list[Work]:
@@ -349,6 +363,19 @@ class Operators:
     def second(self, now_ns: int) -> list[Work]:
         """Once a second: what has ended because nothing more came."""
         return self._streams.second(now_ns)
+
+    def unwatched(self, now_ns: int) -> list[tuple[int, list[Work]]]:
+        """Operations whose lease has run out are aborted: what to do, by the vehicle's system id.
+
+        That is asked in the name of their operator, who may have left."""
+        overdue = map(self._operations.get, self._leases.overdue(now_ns))
+        return [(each.asked.vehicle, self._stop_unwatched(each)) for each in overdue if each]
+
+    def _stop_unwatched(self, operation: ipc.Operation) -> list[Work]:
+        label = f"operation {operation.id} ({operation.asked.word})"
+        text = f"{label} of {operation.operator} is stopped: its lease was not renewed"
+        stop = ipc.Ask(0, "abort", operation=operation.id, vehicle=operation.asked.vehicle)
+        return [Log(Level.WARNING, NODE, text), *self._ask_stop(operation.client, stop)]
 
     def tell(self, told: TellOperator) -> list[Work]:
         return [Emit(told.event, self._requests.get(told.request_id).operator)]

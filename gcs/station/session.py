@@ -454,6 +454,8 @@ class Session:
             work += self._bridge.second(now_ns, self._links.counts, self._signatures)
         work += self._signatures.second(now_ns)
         work += self._operators.second(now_ns)
+        for sysid, stop in self._operators.unwatched(now_ns):
+            work.append(ForOwner(self._vehicles.owner_for(sysid), tuple(stop)))
         if first.telemetry is None:
             return work + self._waiting.second(now_ns)
         if now_ns - self._incoming.other_station_ns > self._times.real_ns(OTHER_STATION_NS):

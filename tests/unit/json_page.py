@@ -65,6 +65,8 @@ def _type(kind: object) -> str:
     origin, inner = typing.get_origin(kind), typing.get_args(kind)
     if kind is type(None):
         return "null"
+    if origin is typing.Annotated:
+        return _type(inner[0])  # its limits are told in words
     if origin is list:
         return f"[{_type(inner[0])}, ...]"
     if origin is tuple:

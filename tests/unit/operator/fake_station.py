@@ -92,6 +92,8 @@ class FakeStation:
                 return [msgspec.structs.replace(told, goal_sentence=sentence)]
             case ipc.Join() | ipc.Subscribe() | ipc.ListOperations() | ipc.WatchTopics():
                 return []
+            case ipc.Renew() | ipc.Note():
+                return []
 
     def tick(self, now_s: float) -> list[ipc.Event]:
         self.time_s = now_s

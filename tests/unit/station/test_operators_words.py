@@ -35,6 +35,7 @@ asks = st.builds(
     on=st.booleans(),
     path=st.text(),
     operation=st.integers(-1, 12),
+    lease_s=numbers,
 )
 commands = st.one_of(
     asks,
@@ -42,6 +43,8 @@ commands = st.one_of(
     st.builds(ipc.ListOperations, st.integers()),
     st.builds(ipc.WatchTopics),
     st.builds(ipc.Check, asks),
+    st.builds(ipc.Renew, st.integers()),
+    st.builds(ipc.Note, st.text()),
     st.builds(ipc.Join, st.text()),
     st.builds(
         ipc.Stream,
@@ -94,6 +97,8 @@ def test_every_kind_of_command_is_tried() -> None:
         ipc.Subscribe,
         ipc.ListOperations,
         ipc.Check,
+        ipc.Renew,
+        ipc.Note,
         ipc.Join,
         ipc.Pending,
         ipc.WatchTopics,

@@ -1,0 +1,1 @@
+"""`gcs mcp`: a station as tools and resources for an agent, by the Model Context Protocol."""
