@@ -40,7 +40,11 @@ def complete(text: str, known: Known) -> Completed:
         return Completed(text, ())
     argument, begun = word.arguments[len(given) - 1], given[-1]
     offers = [each for each in _values(argument, word, begun, known) if each.startswith(begun)]
-    return _agreed(text[: len(text) - len(begun)], begun, offers, offers)
+    before = text[: len(text) - len(begun)]
+    longer = [each for each in WORDS if each.name.startswith(text.lower())]  # fence, fence put
+    ends = [before + each for each in offers]
+    ends += [each.name + (" " if each.arguments else "") for each in longer]
+    return _agreed("", text, ends, [*offers, *(each.name for each in longer)])
 
 
 def modes_of(vehicle: str) -> tuple[str, ...]:
