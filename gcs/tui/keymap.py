@@ -149,7 +149,7 @@ def _textual(action: str, key: str) -> str:
         if name:
             return _TEXTUAL.get(name, name)
     word = key.lower()
-    if word in _SPECIAL or re.fullmatch(r"ctrl\+[a-z]", word):
+    if word in _SPECIAL or re.fullmatch(r"ctrl\+[a-z]|shift\+(up|down|left|right)", word):
         return word
     near = difflib.get_close_matches(word, _SPECIAL, n=1)
     hint = f"did you mean {near[0]}?" if near else 'one sign such as "g" or "[", or ' + _WORDS
