@@ -55,6 +55,7 @@ class Code(StrEnum):
     OTHER_OPERATOR = "OTHER_OPERATOR"
     NOT_RUNNING = "NOT_RUNNING"
     BATTERY_REACH = "BATTERY_REACH"
+    OTHER_VEHICLE = "OTHER_VEHICLE"
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,6 +47,7 @@ from gcs.station.links import Counts, Links
 from gcs.station.operator_lines import line
 from gcs.station.operators import Operators
 from gcs.station.seen import seen_of
+from gcs.station.separation import Separation
 from gcs.station.signatures import Signatures
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.missions.missions import timing_of
@@ -77,6 +78,7 @@ class BridgePort:
         policy: Policy,
         times: Times,
         vehicles: Vehicles,
+        separation: Separation,
         operators: Operators,
         links: Links,
     ) -> None:
@@ -87,6 +89,7 @@ class BridgePort:
         timing = timing_of(times)
         self.bridge = Bridge(own, rules, needed_hz(times), silent_ns, timing, deadman_ns)
         self._vehicles = vehicles
+        self._separation = separation
         self._operators = operators
         self._links = links
         self._policy = policy
@@ -291,7 +294,8 @@ class BridgePort:
             case Lost(client, reason):
                 return self._operators.lost(client, reason)
             case ClientRequest(client, command):
-                return [line(self._operators, self._vehicles, self.bridge, client, command, now_ns)]
+                parts = self._operators, self._vehicles, self._separation, self.bridge
+                return [line(*parts, client, command, now_ns)]
             case ClientRefused(client, ask, refusal):
                 return self._operators.refuse(client, ask, refusal)
             case AsksPlan():

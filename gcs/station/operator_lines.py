@@ -21,6 +21,7 @@ from gcs.session.requests import request_of, source_of
 from gcs.session.work import STATION, ForOwner, Work
 from gcs.station.goals import settled
 from gcs.station.operators import Operators
+from gcs.station.separation import Separation
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.gate_port import NOT_FLYING
 
@@ -28,6 +29,7 @@ from gcs.vehicle.gate_port import NOT_FLYING
 def line(
     operators: Operators,
     vehicles: Vehicles,
+    separation: Separation,
     bridge: Bridge | None,
     operator: int,
     command: ipc.Command,
@@ -39,7 +41,8 @@ def line(
     client has written how high one is, and an arming after one has set the mode of a mission.
     """
     if isinstance(command, ipc.Check):
-        answer = _checked(operators, vehicles, bridge, operator, command.asked, now_ns)
+        parts = operators, vehicles, separation, bridge
+        answer = _checked(*parts, operator, command.asked, now_ns)
         return ForOwner(STATION, (Emit(answer, operator),))
     if not isinstance(command, ipc.Ask | ipc.Stream):
         return ForOwner(STATION, tuple(operators.line(operator, command, None, None, now_ns)))
@@ -84,6 +87,7 @@ def _asked(
 def _checked(
     operators: Operators,
     vehicles: Vehicles,
+    separation: Separation,
     bridge: Bridge | None,
     operator: int,
     ask: ipc.Ask,
@@ -109,6 +113,9 @@ def _checked(
     gate, goal = vehicle.gate, None
     if isinstance(request, GoTo):
         goal = why_not_once_hovering(gate.memory, request.goal_ned, request.yaw_rad)
+        near = separation.why_not(vehicles, owner, request.goal_ned, now_ns)
+        if near is not None:
+            return announcements.checked(ask, near, goal or near)
     return announcements.checked(ask, gate.would(request, source_of(operator), now_ns), goal)
 
 

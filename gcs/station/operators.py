@@ -305,6 +305,10 @@ class Operators:
         """What is refused before it is a request: it has a number, a verdict and a record too."""
         return self._refuse(self._requests.open(ask, operator), ask, refusal)
 
+    def refuse_goal(self, request_id: int, refusal: Refusal) -> list[Work]:
+        """A goal that the gate is not asked for."""
+        return self._refuse(request_id, self._requests.get(request_id).ask, refusal)
+
     @staticmethod
     def _refuse(request_id: int, ask: ipc.Ask, refusal: Refusal) -> list[Work]:
         text = f"{ask.word[:LOGGED_LETTERS]}: refused {refusal.code.value}: {refusal.sentence}"

@@ -1,22 +1,29 @@
 """Whether the vehicles of one session come too close to each other.
 
 Looked at with every position of one that flies, against all others that fly: as a condition of
-both.  Each position is in its own vehicle's frame, so it goes through latitude and longitude where
-the frames differ.  A vehicle without an origin or a fresh position is compared with nobody: that it
-lacks them is a condition of its own.
+both.  And with every goal, before the gate sees it: its leg is compared with what the others fly,
+to their goals or where they hover, whenever each is there.  Each position is in its own vehicle's
+frame, so it goes through latitude and longitude where the frames differ.  A vehicle without an
+origin or a fresh position is compared with nobody: that it lacks them is a condition of its own.
 """
 
 from __future__ import annotations
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.projection import Projection
-from gcs.gate.airspace.separation import Track, closest_approach, is_too_close
+from gcs.gate.airspace.separation import Track, between_legs_m, closest_approach, is_too_close
 from gcs.gate.condition import Condition
 from gcs.gate.policy.policy import SeparationLimits
+from gcs.gate.refusal import Code, Refusal
+from gcs.gate.requests import GoTo
+from gcs.gate.states import State
 from gcs.session.work import ForOwner, Work, condition
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
+
+LESS_M = 0.1
+"""Vehicles that are too close already may fly where they come no nearer than that."""
 
 
 class Separation:
@@ -34,6 +41,39 @@ class Separation:
             if other != slot:
                 work += self._pair(vehicles, slot, other, now_ns)
         return work
+
+    def why_not(self, vehicles: Vehicles, slot: int, goal_ned: Vec3, now_ns: int) -> Refusal | None:
+        """Why the vehicle in that slot may not fly straight to a goal: its leg comes too close to
+        another vehicle's.  Of one on the ground the gate says why it may not."""
+        here = vehicles.of_owner(slot).flying(now_ns)
+        if here is None or here.pos_ned is None:
+            return None
+        for number, other in enumerate(vehicles):
+            there = None if number == slot else other.flying(now_ns)
+            if there is None or there.pos_ned is None:
+                continue
+            start = _in_frame_of(here, there, there.pos_ned)
+            end = _in_frame_of(here, there, _end_of(other, there.pos_ned))
+            if start is None or end is None:
+                continue
+            wrong_m = (here.health.accuracy_h_m or 0.0) + (there.health.accuracy_h_m or 0.0)
+            now_m = between_legs_m(here.pos_ned, here.pos_ned, start, end) - wrong_m
+            least_m = max(0.0, between_legs_m(here.pos_ned, goal_ned, start, end) - wrong_m)
+            if least_m < min(self._limits.least_m, now_m - LESS_M):
+                return self._refusal(other, least_m)
+        return None
+
+    def _refusal(self, other: Vehicle, least_m: float) -> Refusal:
+        sentence = (
+            f"the leg comes as near as {least_m:.1f} m to where vehicle {other.sysid} flies "
+            f"({self._limits.least_m:g} m are to be kept)"
+        )
+        numbers = (
+            ("other_vehicle", float(other.sysid)),
+            ("least_m", least_m),
+            ("to_keep_m", self._limits.least_m),
+        )
+        return Refusal(Code.OTHER_VEHICLE, sentence, numbers)
 
     def _pair(self, vehicles: Vehicles, slot: int, other: int, now_ns: int) -> list[Work]:
         was = other in self._close.setdefault(slot, set())
@@ -72,6 +112,22 @@ class Separation:
             f"{approach.least_m:.1f} m away in {approach.in_s:.1f} s, if both fly on "
             f"({limits.least_m:g} m are to be kept)"
         )
+
+
+def _end_of(vehicle: Vehicle, pos_ned: Vec3) -> Vec3:
+    """Where what it flies ends, as verified: a goal that waits for its tick, the goal, the top of
+    its climb, the ground below a landing, where it hovers; else where it is."""
+    memory = vehicle.gate.memory
+    pending = memory.pending.request if memory.pending else None
+    if isinstance(pending, GoTo):
+        return pending.goal_ned
+    if memory.goal is not None:
+        return memory.goal.pos_ned
+    if memory.state is State.TAKING_OFF:
+        return memory.top_ned
+    if memory.state is State.LANDING:
+        return (pos_ned[0], pos_ned[1], max(pos_ned[2], memory.ground_down_m or 0.0))
+    return pos_ned if memory.hold is None else memory.hold.pos_ned
 
 
 def _in_frame_of(here: Telemetry, there: Telemetry, pos_ned: Vec3) -> Vec3 | None:

@@ -30,9 +30,9 @@ from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
-from gcs.gate.inputs import PositionSeen, Tick
+from gcs.gate.inputs import PositionSeen, Requested, Tick
 from gcs.gate.machine.gate import Gate
-from gcs.gate.requests import EndStream
+from gcs.gate.requests import EndStream, GoTo
 from gcs.protocol.effects import Address, Send
 from gcs.session import announcements
 from gcs.session.effects import Effect, Emit, Finish
@@ -140,6 +140,7 @@ class Session:
             setup.policy,
             self._times,
             self._vehicles,
+            self._separation,
             self._operators,
             self._links,
         )
@@ -288,7 +289,8 @@ class Session:
                 return self._welcome(given, now_ns)
             case OperatorLine(operator, command):
                 bridge = self._bridge.bridge if self._bridge.open else None
-                return [line(self._operators, self._vehicles, bridge, operator, command, now_ns)]
+                parts = self._operators, self._vehicles, self._separation, bridge
+                return [line(*parts, operator, command, now_ns)]
             case OperatorNoise(operator, text):
                 return [Emit(ipc.Trouble(f"not a command: {text}"), operator)]
             case OperatorGone(operator, reason):
@@ -337,6 +339,10 @@ class Session:
                 if len(self._vehicles) > 1:
                     work += self._separation.moved(self._vehicles, owner, now_ns)
                 return work
+            case GateInput(Requested(request_id, _, GoTo(goal_ned))) if (
+                refusal := self._separation.why_not(self._vehicles, owner, goal_ned, now_ns)
+            ):
+                return self._operators.refuse_goal(request_id, refusal)
             case GateInput(given):
                 if not self._bridge.open:
                     return vehicle.ask_gate(given, now_ns)

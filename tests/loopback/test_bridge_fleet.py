@@ -13,6 +13,7 @@ from gcs.gate.condition import Condition, Severity
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.report import AttachmentItem, DecisionItem
+from gcs.station.separation import Separation
 from tests.loopback.bridged import ARRIVES_M, BRIDGE
 from tests.loopback.fleet import (
     ACCEPTED,
@@ -221,8 +222,11 @@ def least_distance_m(flight: Fleet, seconds: float) -> float:
     return least_m
 
 
-def flown_at_each_other(policy: str) -> tuple[Fleet, float]:
-    """Both fly to the place between them, at one height; how near they have come."""
+def flown_at_each_other(policy: str, patch: pytest.MonkeyPatch) -> tuple[Fleet, float]:
+    """Both fly to the place between them, at one height; how near they have come.
+
+    Their goals are not compared, as little as what a mission or a stream flies."""
+    patch.setattr(Separation, "why_not", lambda *_: None)
     flight = Fleet(("px4", "px4"), policy=parse_policy(policy, "test"), apart_m=60.0)
     client = flight.all_flying()
     assert too_close(flight) == [False, False]
@@ -231,8 +235,10 @@ def flown_at_each_other(policy: str) -> tuple[Fleet, float]:
     return flight, least_distance_m(flight, 15)
 
 
-def test_two_that_fly_at_each_other_are_stopped_where_the_policy_says_hold() -> None:
-    flight, least_m = flown_at_each_other('severities.too_close = "hold"')
+def test_two_that_fly_at_each_other_are_stopped_where_the_policy_says_hold(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    flight, least_m = flown_at_each_other('severities.too_close = "hold"', monkeypatch)
     assert [flight.state_of(n) for n in (1, 2)] == [State.HOLDING] * 2
     assert least_m > 5.0
     assert too_close(flight) == [False, False], "both rest, and are far enough from each other"
@@ -240,9 +246,9 @@ def test_two_that_fly_at_each_other_are_stopped_where_the_policy_says_hold() -> 
     assert any(line.startswith("vehicle 1: ") and "vehicle 2: " in line for line in told), told
 
 
-def test_by_default_they_are_only_told() -> None:
+def test_by_default_they_are_only_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same flight without the policy's hold: they meet, so the test above can fail."""
-    flight, least_m = flown_at_each_other("")
+    flight, least_m = flown_at_each_other("", monkeypatch)
     assert least_m < 5.0
     assert too_close(flight) == [True, True]
     assert all(flight.gate(n).severity is Severity.CAUTION for n in (1, 2))

@@ -65,6 +65,7 @@ NOT_THE_GATES: Final = frozenset(
     {
         Code.BAD_MISSION,  # of a mission job, before the gate hears of a mission
         Code.BATTERY_REACH,  # of a mission job, too
+        Code.OTHER_VEHICLE,  # the session's
         Code.NO_ORIGIN,  # these fences are not geographic
         Code.SEVERAL_VEHICLES,  # the session's
         Code.UNSUPPORTED_VEHICLE,  # the session's

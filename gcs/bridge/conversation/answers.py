@@ -26,6 +26,7 @@ MAY_HELP_LATER: Final = frozenset(
         Code.CONTROL_PENDING,
         Code.HOLDING,
         Code.OTHER_OPERATOR,
+        Code.OTHER_VEHICLE,
         Code.SEVERITY,
         Code.RECORDER_DOWN,
         Code.SUPERSEDED,

@@ -1,7 +1,8 @@
 """How near two vehicles will come to each other, and whether that is too close.
 
 Both are taken to fly on as they do, for as long as is looked ahead; how wrong their positions and
-velocities may be makes the distance smaller.  In one horizontal frame, metres and seconds.
+velocities may be makes the distance smaller.  Or, of what they are to fly, the legs are compared,
+whenever each is flown.  In one horizontal frame, metres and seconds.
 """
 
 from __future__ import annotations
@@ -68,6 +69,32 @@ def closest_approach(a: Track, b: Track, within_s: float) -> Approach:
 def is_too_close(approach: Approach, limits: SeparationLimits, *, was: bool) -> bool:
     """Whether two vehicles come too close to each other, `was` said whether they did so far."""
     return not approach.least_m >= limits.least_m + (limits.hysteresis_m if was else 0.0)
+
+
+def between_legs_m(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> float:
+    """Metres between the legs a-b and c-d, each from its start to its end.
+
+    The nearest points of the two lines, where both lie within their legs; else one of them is an
+    end of a leg.  What is not finite is taken for the worst: they meet.
+    """
+    if not all(map(math.isfinite, (*a, *b, *c, *d))):
+        return 0.0
+    u, v, w = _difference(b, a), _difference(d, c), _difference(a, c)
+    uu, uv, vv, uw, vw = _dot(u, u), _dot(u, v), _dot(v, v), _dot(u, w), _dot(v, w)
+    across = uu * vv - uv * uv
+    found = [_to_leg_m(a, c, d), _to_leg_m(b, c, d), _to_leg_m(c, a, b), _to_leg_m(d, a, b)]
+    if across > 0.0:
+        s, t = (uv * vw - vv * uw) / across, (uu * vw - uv * uw) / across
+        if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
+            found.append(math.dist(_along(a, u, s), _along(c, v, t)))
+    return min(found)
+
+
+def _to_leg_m(p: Vec3, a: Vec3, b: Vec3) -> float:
+    step = _difference(b, a)
+    length2 = _dot(step, step)
+    t = 0.0 if length2 == 0.0 else _dot(_difference(p, a), step) / length2
+    return math.dist(p, _along(a, step, min(max(t, 0.0), 1.0)))
 
 
 def _candidates(apart: Vec3, relative: Vec3, widens_m_s: float, end_s: float) -> tuple[float, ...]:

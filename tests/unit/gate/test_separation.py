@@ -11,11 +11,13 @@ from hypothesis import strategies as st
 from gcs.gate.airspace.separation import (
     Approach,
     Track,
+    between_legs_m,
     closest_approach,
     is_too_close,
 )
 from gcs.gate.policy.policy import SeparationLimits
 
+V = tuple[float, float, float]
 STILL = (0.0, 0.0, 0.0)
 LIMITS = SeparationLimits(least_m=5.0, hysteresis_m=5.0, within_s=10.0)
 
@@ -146,3 +148,33 @@ def test_a_wider_error_never_makes_it_safer(
     sure = closest_approach(Track(pos, v), still, 10.0)
     unsure = closest_approach(Track(pos, v, error_m=error, v_error_m_s=error), still, 10.0)
     assert unsure.least_m <= sure.least_m + 1e-9
+
+
+places = st.tuples(*[st.floats(-100.0, 100.0)] * 3)
+
+
+@given(places, places, places, places)
+def test_legs_are_as_near_as_any_two_of_their_points(a: V, b: V, c: V, d: V) -> None:
+    shares = [number / 20 for number in range(21)]
+    tried_m = min(
+        math.dist(_share(a, b, one), _share(c, d, other)) for one in shares for other in shares
+    )
+    found_m = between_legs_m(a, b, c, d)
+    coarse_m = (math.dist(a, b) + math.dist(c, d)) / 40
+    assert tried_m - coarse_m - 1e-6 <= found_m <= tried_m + 1e-6
+    assert found_m == pytest.approx(between_legs_m(d, c, b, a), abs=1e-6)
+
+
+def test_legs_that_cross_meet_and_one_that_is_not_finite_is_taken_to_meet() -> None:
+    assert between_legs_m((0, 0, 0), (10, 10, 0), (10, 0, 0), (0, 10, 0)) == pytest.approx(0.0)
+    assert between_legs_m((0, 0, 0), (10, 10, 0), (10, 0, 7), (0, 10, 7)) == pytest.approx(7.0)
+    assert between_legs_m((0, 0, 0), (9, 0, 0), (0, 4, 0), (9, 4, 0)) == pytest.approx(4.0)
+    assert between_legs_m((0, 0, 0), (math.nan, 0, 0), (50, 0, 0), (50, 0, 0)) == 0.0
+
+
+def _share(a: V, b: V, share: float) -> V:
+    return (
+        a[0] + share * (b[0] - a[0]),
+        a[1] + share * (b[1] - a[1]),
+        a[2] + share * (b[2] - a[2]),
+    )
