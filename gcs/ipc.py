@@ -57,8 +57,8 @@ class Circle(msgspec.Struct, frozen=True, omit_defaults=True):
 class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_defaults=True):
     """One request.  `id` is the client's own number and comes back in every answer.
 
-    `word` is one of: control arm disarm takeoff goto heading orbit land rtl hold abort resume photo
-    mode fence mission_start mission_upload mission_download mission_clear mission_set_current
+    `word` is one of: control arm disarm takeoff goto heading speed orbit land rtl hold abort resume
+    photo mode fence mission_start mission_upload mission_download mission_clear mission_set_current
     mission_check fence_upload fence_download fence_clear fence_put rally_upload rally_download
     rally_clear param_list param_get param_set file_read file_list file_crc log_list log_read
     stream_begin stream_end station_take station_release station_end.
@@ -76,6 +76,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     goal_global: Maybe3 | None = None  # goto: latitude, longitude in degrees; metres above home
     amsl: bool = False  # goal_global: metres above mean sea level instead
     yaw_deg: float | None = None
+    speed_m_s: float | None = None  # speed: of the legs of goto from now on; goto: of this one
     up_m: float | None = None  # takeoff: metres above the take-off point
     mode: str = ""  # mode: the autopilot's own name; mission_check: wait until it is shown
     force: bool = False  # disarm

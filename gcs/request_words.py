@@ -60,6 +60,7 @@ class Doer(Enum):
     TRANSFER = "a job about missions that moves nothing: an abort of it stops the job alone"
     READER = "a job about what the vehicle keeps: parameters, files, logs; it moves nothing"
     ORBIT = "the circle that the station flies"
+    LEGS = "how the station flies the next legs"
     STATION = "the station, at once"
     CONSOLE = "the operator's program itself"
 
@@ -206,7 +207,8 @@ def _to_a_goal(ask: Ask) -> gate.GoTo:
     if ask.goal_enu is None or len(goals_of(ask)) > 1:
         raise BadAskError("goto needs one goal: goal_enu, move_enu, move_body or goal_global")
     goal_ned = ned_from_enu(finite_or_nan(ask.goal_enu))
-    return gate.GoTo(goal_ned, None if ask.yaw_deg is None else heading_rad(ask.yaw_deg))
+    yaw_rad = None if ask.yaw_deg is None else heading_rad(ask.yaw_deg)
+    return gate.GoTo(goal_ned, yaw_rad, ask.speed_m_s)
 
 
 def _up(ask: Ask) -> gate.TakeOff:
@@ -299,6 +301,13 @@ TABLE: Final[tuple[Word, ...]] = (
         moves=True,
         gate=_to_a_goal,
         needs_control=True,
+    ),
+    Word(
+        "speed",
+        "the most that the next legs of goto, move and others are flown at, within the policy",
+        (Argument("M_S", ArgumentKind.NUMBER, "speed_m_s"),),
+        "2",
+        doer=Doer.LEGS,
     ),
     Word(
         "orbit",
@@ -524,6 +533,8 @@ def label(request: Ask) -> str:
     parts: list[str] = [name]
     if request.word == "takeoff":
         parts.append(_shown(request.up_m))
+    if request.word == "speed":
+        parts.append(_shown(request.speed_m_s))
     for field, goal in goals_of(request).items():
         digits = 10 if field == "goal_global" else 6
         parts += [_shown(number, digits) for number in goal]

@@ -54,6 +54,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "move": Entry("gcs.cli.oneshot:move", "Fly so far east, north, up of where it is."),
         "forward": Entry("gcs.cli.oneshot:forward", "Fly so far where its nose points."),
         "heading": Entry("gcs.cli.oneshot:heading", "Turn the nose, and nothing else."),
+        "speed": Entry("gcs.cli.oneshot:speed", "The most that the next legs are flown at."),
         "orbit": Entry("gcs.cli.oneshot:orbit", "Fly round a circle."),
         "land": Entry("gcs.cli.oneshot:land", "Land where it is."),
         "rtl": Entry("gcs.cli.oneshot:rtl", "Return to home and land."),

@@ -14,10 +14,12 @@ from gcs.gate.states import FlightMode
 
 @dataclass(frozen=True, slots=True)
 class GoTo:
-    """Fly straight to `goal_ned` and hover; `yaw_rad` None leaves the heading to the autopilot."""
+    """Fly straight to `goal_ned` and hover; `yaw_rad` None leaves the heading to the autopilot.
+    `speed_m_s` is the most along the way; None: what the policy's `[pace]` lets it."""
 
     goal_ned: Vec3
     yaw_rad: float | None = None
+    speed_m_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

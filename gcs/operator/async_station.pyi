@@ -145,6 +145,9 @@ class AsyncStation:
     async def heading(
         self, yaw_deg: float, *, wait: bool = True, timeout_s: float | None = None
     ) -> AsyncOperation: ...
+    async def speed(
+        self, speed_m_s: float, *, wait: bool = True, timeout_s: float | None = None
+    ) -> AsyncOperation: ...
     async def orbit(
         self,
         radius_m: float,

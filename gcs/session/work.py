@@ -115,6 +115,13 @@ class AskOrbit(msgspec.Struct, frozen=True, gc=False):
     operator: int
 
 
+class AskSpeed(msgspec.Struct, frozen=True, gc=False):
+    """The request that was opened as `request_id`, for the speed of the next legs."""
+
+    request_id: int
+    speed_m_s: float
+
+
 class OrbitSample(msgspec.Struct, frozen=True, gc=False):
     """The next sample of the orbit that an operator has asked for; None: it is over."""
 
@@ -173,6 +180,7 @@ Work: TypeAlias = (
     | AskMission
     | AskReader
     | AskOrbit
+    | AskSpeed
     | OrbitSample
     | StopTransfer
     | StreamOver

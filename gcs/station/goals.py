@@ -10,27 +10,28 @@ from gcs import ipc
 from gcs.bridge.translate.meaning import Seen
 from gcs.bridge.translate.places import Datum, place_of, rotated
 from gcs.frames import Vec3, enu_from_ned, ned_from_enu
-from gcs.gate.machine.gate import Gate
 from gcs.gate.machine.sentences import REFUSED
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import State
 from gcs.request_words import goals_of
 from gcs.station.seen import seen_of
-from gcs.vehicle.talk.telemetry import Telemetry
+from gcs.vehicle.vehicle import Vehicle
 
 _NOWHERE = Refusal(Code.NO_POSITION, "where the vehicle is now is not known")
 
 
-def settled(ask: ipc.Ask, telemetry: Telemetry | None, gate: Gate) -> ipc.Ask | Refusal:
-    """The same with its goal as `goal_enu`, by what the vehicle has reported last; any other
-    request as it is."""
-    goals = goals_of(ask)
+def settled(ask: ipc.Ask, vehicle: Vehicle) -> ipc.Ask | Refusal:
+    """The same with its goal as `goal_enu`, by what the vehicle has reported last, and at the speed
+    that was asked for its legs; any other request as it is."""
+    goals, telemetry = goals_of(ask), vehicle.telemetry
     heading = ask.word == "heading"
+    if ask.word == "goto" and ask.speed_m_s is None and vehicle.leg_speed_m_s is not None:
+        ask = msgspec.structs.replace(ask, speed_m_s=vehicle.leg_speed_m_s)
     if not heading and (ask.word != "goto" or len(goals) != 1 or "goal_enu" in goals):
         return ask
     if telemetry is None:
         return Refusal(Code.NO_VEHICLE, REFUSED[Code.NO_VEHICLE])
-    seen = seen_of(telemetry, gate, {}, 0.0)
+    seen = seen_of(telemetry, vehicle.gate, {}, 0.0)
     if heading:
         place_ned = _kept(seen) or _NOWHERE
     else:

@@ -73,7 +73,7 @@ def _asked(
         not_now = bridge.armings.why_not(command, telemetry.sysid)
         refusal = refusal or not_now
     if isinstance(command, ipc.Ask) and refusal is None and owner != STATION:
-        asked = settled(command, telemetry, vehicles.of_owner(owner).gate)
+        asked = settled(command, vehicles.of_owner(owner))
         command, refusal = (command, asked) if isinstance(asked, Refusal) else (asked, None)
     if isinstance(command, ipc.Stream) and owner != STATION:
         streamed = vehicles.of_owner(owner).orbits.streams_itself(operator)
@@ -100,7 +100,7 @@ def _checked(
     if bridge is not None and refusal is None and owner != STATION:
         refusal = bridge.armings.why_not(ask, vehicle.sysid)
     if refusal is None and owner != STATION:
-        asked = settled(ask, vehicle.telemetry, vehicle.gate)
+        asked = settled(ask, vehicle)
         ask, refusal = (ask, asked) if isinstance(asked, Refusal) else (asked, None)
     if refusal is not None or owner == STATION:
         return announcements.checked(ask, refusal)

@@ -7,6 +7,8 @@ and returns work for the rest of the session.
 
 from __future__ import annotations
 
+import math
+
 from gcs import ipc
 from gcs.bridge.effects import AsksPlan, StopsPlan
 from gcs.enu_text import plain_enu
@@ -26,6 +28,7 @@ from gcs.session.work import (
     AskMission,
     AskOrbit,
     AskReader,
+    AskSpeed,
     EndSession,
     GateInput,
     GiveVerdict,
@@ -208,6 +211,10 @@ class Operators:
         if doer is Doer.ORBIT:
             given = self._give_where_free(operator, ask, now_ns)
             return [*given, AskOrbit(self._requests.open(ask, operator), ask, operator)]
+        if doer is Doer.LEGS:
+            given = self._give_where_free(operator, ask, now_ns)
+            speed_m_s = math.nan if ask.speed_m_s is None else ask.speed_m_s
+            return [*given, AskSpeed(self._requests.open(ask, operator), speed_m_s)]
         try:
             request = request_of(ask, autopilot or GENERIC)
         except BadAskError as error:

@@ -67,6 +67,7 @@ from gcs.session.work import (
     AskMission,
     AskOrbit,
     AskReader,
+    AskSpeed,
     CheckStart,
     EndSession,
     ForOwner,
@@ -391,6 +392,8 @@ class Session:
                 return vehicle.readers.ask(item, vehicle.telemetry, vehicle.port.policy, now_ns)
             case AskOrbit():
                 return vehicle.ask_orbit(item, now_ns)
+            case AskSpeed():
+                return vehicle.ask_speed(item)
             case OrbitSample(operator, sample):
                 if sample is None:
                     return self._operators.end_stream(operator, vehicle.sysid)

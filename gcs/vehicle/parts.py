@@ -75,6 +75,8 @@ class VehicleParts:
         self.missions = Missions(own, times)
         self.readers = Readers(own, times)
         self.orbits = Orbits(times)
+        self.leg_speed_m_s: float | None = None
+        """The most that legs are flown at, where that was asked for."""
         self.returns = ReturnPlaces(own, times, policy)
         self.fence = FenceOnBoard(own, times)
         self.words = Words(times)

@@ -12,10 +12,12 @@ from collections.abc import Iterable
 from gcs.config import StationConfig
 from gcs.frames import Vec3
 from gcs.gate import effects, inputs
+from gcs.gate.airspace.pace import why_not_speed
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
 from gcs.gate.machine.could import why_not_go_to, why_not_resume
 from gcs.gate.machine.gate import Gate
+from gcs.gate.machine.sentences import REFUSED
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
@@ -25,7 +27,17 @@ from gcs.session import announcements
 from gcs.session.effects import Record
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
-from gcs.session.work import AskMission, AskOrbit, CheckStart, Log, PlaceFence, Work, condition
+from gcs.session.work import (
+    AskMission,
+    AskOrbit,
+    AskSpeed,
+    CheckStart,
+    GiveVerdict,
+    Log,
+    PlaceFence,
+    Work,
+    condition,
+)
 from gcs.vehicle import record_items
 from gcs.vehicle.gate_port import NOT_FLYING
 from gcs.vehicle.health.position_health import GPS_SILENT_NS
@@ -213,6 +225,24 @@ class Vehicle(VehicleParts):
         return self.ask_for_control(now_ns) + self.orbits.ask(
             asked, self.telemetry, self.port.gate, self.port.policy, now_ns
         )
+
+    def ask_speed(self, asked: AskSpeed) -> list[Work]:
+        """The most that the next legs are flown at, whoever asks for them; a leg under way goes on
+        as it is."""
+        if self.telemetry is None:
+            unheard = Refusal(Code.NO_VEHICLE, REFUSED[Code.NO_VEHICLE])
+            return [GiveVerdict(asked.request_id, effects.Ruling.REFUSED, unheard)]
+        name = self.telemetry.autopilot.name
+        refusal = why_not_speed(self.port.policy, name, asked.speed_m_s)
+        if refusal is not None:
+            return [GiveVerdict(asked.request_id, effects.Ruling.REFUSED, refusal)]
+        self.leg_speed_m_s = asked.speed_m_s
+        text = f"the next legs are flown at {asked.speed_m_s:g} m/s at most"
+        return [
+            GiveVerdict(asked.request_id, effects.Ruling.ACCEPTED),
+            Log(effects.Level.INFO, NODE, text),
+            effects.Outcome(asked.request_id, effects.OutcomeKind.COMPLETE, None, text),
+        ]
 
     def orbit_sample(self, in_control: int, now_ns: int) -> list[Work]:
         """The next sample of the orbit that is flown, if it is that of the operator in control."""

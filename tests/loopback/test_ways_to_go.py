@@ -139,9 +139,54 @@ def test_the_audit_finds_every_goal_where_it_was_settled(monkeypatch: pytest.Mon
     flight = Flight().hovering(UP_M)
     flown(flight, move_enu=(2.0, -1.0, 1.0), yaw_deg=45.0)
     flown(flight, "heading", yaw_deg=90.0)
+    assert flight.done(asked(flight, "speed", speed_m_s=1.5)) == "complete"
     flown(flight, move_body=(2.0, 0.0, 0.0))
     home = HOMES["px4"]
     flown(flight, goal_global=(home.lat_deg, home.lon_deg, 3.0))
     result = audit(tape.take(), tape.attachments, "test", "")
     assert result.good, (result.notes, result.first[:5])
     assert result.compared["frame sent"] > 250
+
+
+def fastest_m_s(flight: Flight, **goal: object) -> float:
+    """Of the truth, on the way to a goal."""
+    number, fastest = asked(flight, "goto", **goal), 0.0
+    while flight.outcome(number) is None:
+        flight.run(0.1)
+        fastest = max(fastest, math.hypot(*flight.vehicle.truth.v_ned))
+    assert flight.outcome(number) == "complete"
+    return fastest
+
+
+def test_the_next_legs_are_flown_at_the_speed_that_was_asked_for(personality: Personality) -> None:
+    flight = Flight(personality).hovering(UP_M)
+    assert fastest_m_s(flight, goal_enu=(25.0, 0.0, UP_M)) > 4.0
+    assert flight.done(asked(flight, "speed", speed_m_s=1.5)) == "complete"
+    assert fastest_m_s(flight, goal_enu=(0.0, 12.0, UP_M)) == pytest.approx(1.5, abs=0.35)
+    assert fastest_m_s(flight, move_enu=(4.0, 0.0, 8.0)) == pytest.approx(1.5, abs=0.35)
+    one_leg = fastest_m_s(flight, goal_enu=(16.0, 12.0, UP_M), speed_m_s=3.0)
+    assert one_leg == pytest.approx(3.0, abs=0.6)
+    assert fastest_m_s(flight, goal_enu=(4.0, 12.0, UP_M)) == pytest.approx(1.5, abs=0.35)
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "code"),
+    [(12.01, "POLICY"), (0.05, "POLICY"), (0.0, "POLICY"), (-1.0, "POLICY"), (None, "NON_FINITE")],
+)
+def test_a_speed_beyond_the_policy_is_refused_not_clamped(
+    speed_m_s: float | None, code: str
+) -> None:
+    """PX4's legs are flown at 12 m/s at most, by the default policy."""
+    flight = Flight().hovering(UP_M)
+    number = asked(flight, "speed", speed_m_s=speed_m_s)
+    assert flight.done(number) == f"refused {code}"
+    assert flight.verdicts(number)[0].numbers["max_speed_m_s"] == 12.0
+    if speed_m_s is not None:
+        goal = (3.0, 0.0, UP_M)
+        assert flight.done(asked(flight, goal_enu=goal, speed_m_s=speed_m_s)) == f"refused {code}"
+
+
+def test_a_slow_leg_has_the_time_that_it_takes() -> None:
+    flight = Flight().hovering(UP_M)
+    flight.done(asked(flight, "speed", speed_m_s=0.2))
+    assert flight.done(asked(flight, goal_enu=(14.0, 0.0, UP_M)), 300.0) == "complete"

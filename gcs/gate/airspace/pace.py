@@ -13,6 +13,7 @@ slow down.
 The speed is the least of
 
     most, or near                     the policy's, `[pace]`: with room past the goal, or without
+    its share of what was asked for   so that level and vertical together are no faster than that
     v + gain                          it grows no faster than that, so the vehicle leans little
     p d,  or sqrt(2 a (d - a / 2 p^2)) for d > a / p^2
                                       a gentle end: d metres before the goal it slows down by a
@@ -33,11 +34,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
+from gcs.enu_text import fixed
 from gcs.frames import Vec3
 from gcs.gate.airspace.bounds import STANDING, Bounds
 from gcs.gate.airspace.fence_check import Slack
 from gcs.gate.airspace.stopping import travel_m
-from gcs.gate.policy.policy import Pace
+from gcs.gate.policy.policy import Pace, Policy
+from gcs.gate.refusal import Code, Refusal
 
 FIRM: Final = 4.0
 """One that is faster than its stop fits from is asked for less, by this times the difference; where
@@ -63,6 +66,23 @@ class Paced:
     v_ned: Vec3
 
 
+LEAST_M_S: Final = 0.1
+"""A leg may be asked for this slow: the policy's own `[pace]` begins here."""
+
+
+def why_not_speed(policy: Policy, autopilot: str, speed_m_s: float) -> Refusal | None:
+    """May a leg be flown at this speed?  It may be no faster than the policy's."""
+    most_m_s = policy.pace_of(autopilot).level.most_m_s
+    numbers = (("speed_m_s", speed_m_s), ("min_speed_m_s", LEAST_M_S), ("max_speed_m_s", most_m_s))
+    if not math.isfinite(speed_m_s):
+        return Refusal(Code.NON_FINITE, "the speed is not a finite number", numbers)
+    if not LEAST_M_S <= speed_m_s <= most_m_s:
+        asked = f"{fixed(speed_m_s, 2)} m/s"
+        sentence = f"{asked}: legs are flown at {LEAST_M_S:g} to {most_m_s:g} m/s"
+        return Refusal(Code.POLICY, sentence, numbers)
+    return None
+
+
 def paced(
     bounds: Bounds,
     goal_ned: Vec3,
@@ -70,11 +90,13 @@ def paced(
     v_ned: Vec3,
     late_s: float = 0.0,
     beside_ned: Vec3 = STANDING,
+    most_m_s: float = math.inf,
 ) -> Paced:
     """What to send now to a vehicle that is to fly to `goal_ned`, which was verified.
 
     `late_s`: how old the position is, and so how late a stop would be.  `beside_ned`: the velocity
-    that is sent beside the position, which the autopilot adds.
+    that is sent beside the position, which the autopilot adds.  `most_m_s`: along the way, what
+    was asked for.
     """
     rules = bounds.policy.pace_of(bounds.autopilot)
     north, east, down = (goal - pos for goal, pos in zip(goal_ned, pos_ned, strict=True))
@@ -109,8 +131,10 @@ def paced(
         goal_ned[2] + past_v_m,
     )
     may_pass = past_ned != goal_ned and is_free(goal_ned, past_ned)
-    level = _Axis(rules.level, away_m, v_ned[0] * n + v_ned[1] * e, late_s, may_pass)
-    vertical = _Axis(rules.vertical, abs(down), v_ned[2] * sign, late_s, may_pass)
+    left_m = math.hypot(away_m, down)
+    per_m = most_m_s / left_m if left_m > 0.0 and most_m_s < math.inf else math.inf
+    level = _Axis(rules.level, away_m, v_ned[0] * n + v_ned[1] * e, late_s, may_pass, per_m)
+    vertical = _Axis(rules.vertical, abs(down), v_ned[2] * sign, late_s, may_pass, per_m)
 
     def stop_fits(share: float) -> bool:
         fast_h_m_s = share * level.most_m_s + beside_h_m_s
@@ -150,13 +174,14 @@ def paced(
 @dataclass(frozen=True, slots=True)
 class _Axis:
     """Level or vertical: `left_m` to the goal, at `speed_m_s` towards it; `may_pass`: there is room
-    to fly past it."""
+    to fly past it; `per_m`: the speed that was asked for, by the length of the way that is left."""
 
     pace: Pace
     left_m: float
     speed_m_s: float
     late_s: float
     may_pass: bool
+    per_m: float
 
     @property
     def flown_m(self) -> float:
@@ -172,6 +197,8 @@ class _Axis:
         near_m = a / (p * p)
         end_m_s = p * left_m if left_m <= near_m else math.sqrt(2.0 * a * (left_m - near_m / 2.0))
         most_m_s = pace.most_m_s if self.may_pass else pace.near_m_s
+        if self.per_m < math.inf:
+            most_m_s = min(most_m_s, self.per_m * self.left_m)
         return min(most_m_s, max(0.0, self.speed_m_s) + pace.gain_m_s, end_m_s)
 
     @property

@@ -64,7 +64,9 @@ def _fly_goal(step: StepContext) -> None:
     step.verdict(requested, Ruling.ACCEPTED, None)
     step.end(End(OutcomeKind.SUPERSEDED, Code.SUPERSEDED))
     memory.task = Task(requested, Event.GOTO)
-    _fly_to(step, Goal(requested.request.goal_ned, requested.request.yaw_rad, step.evidence))
+    asked = requested.request
+    speed_m_s = math.inf if asked.speed_m_s is None else asked.speed_m_s
+    _fly_to(step, Goal(asked.goal_ned, asked.yaw_rad, step.evidence, speed_m_s=speed_m_s))
 
 
 def _fly_to_top(step: StepContext) -> None:
@@ -77,15 +79,16 @@ def _fly_to(step: StepContext, goal: Goal) -> None:
     assert memory.pos_ned is not None
     memory.goal = goal
     memory.within_since_ns = step.now_ns if within_arrival(step, goal.pos_ned) else None
-    step.set_deadline(_flight_s(step, memory.pos_ned, goal.pos_ned))
+    step.set_deadline(_flight_s(step, memory.pos_ned, goal))
 
 
-def _flight_s(step: StepContext, pos_ned: Vec3, goal_ned: Vec3) -> float:
+def _flight_s(step: StepContext, pos_ned: Vec3, goal: Goal) -> float:
     """Seconds allowed for a goal: the slowest healthy flight there, times the policy's factor."""
-    speeds, policy = step.policy.speeds, step.policy
-    down_m = goal_ned[2] - pos_ned[2]
-    level_s = math.hypot(goal_ned[0] - pos_ned[0], goal_ned[1] - pos_ned[1]) / speeds.cruise_m_s
-    climb_s = abs(down_m) / (speeds.descend_m_s if down_m > 0.0 else speeds.climb_m_s)
+    speeds, policy, most_m_s = step.policy.speeds, step.policy, goal.speed_m_s
+    north_m, east_m, down_m = (to - here for to, here in zip(goal.pos_ned, pos_ned, strict=True))
+    level_s = math.hypot(north_m, east_m) / min(speeds.cruise_m_s, most_m_s)
+    climb_m_s = speeds.descend_m_s if down_m > 0.0 else speeds.climb_m_s
+    climb_s = abs(down_m) / min(climb_m_s, most_m_s)
     return max(policy.deadline_min_s, policy.deadline_factor * (level_s + climb_s))
 
 
@@ -95,9 +98,10 @@ def _refuse_goal(step: StepContext) -> None:
 
 
 def _hold_at_goal(step: StepContext) -> None:
-    """The goal is reached: it is the hold goal from now on."""
+    """The goal is reached: it is the hold goal from now on, whatever the speed of its leg was."""
     memory = step.memory
-    memory.hold, memory.goal = memory.goal, None
+    assert memory.goal is not None
+    memory.hold, memory.goal = replace(memory.goal, speed_m_s=math.inf), None
 
 
 # ---------------------------------------------------------------------------------- control

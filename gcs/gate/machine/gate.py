@@ -340,7 +340,7 @@ class Gate:
         now_ns = self._step.now_ns
         if isinstance(draft, SetpointDraft):
             goal = draft.goal
-            target_ned = towards(self._step, goal.pos_ned)
+            target_ned = towards(self._step, goal.pos_ned, most_m_s=goal.speed_m_s)
             assert all(map(math.isfinite, target_ned))
             return SendSetpoint(permit.issue(target_ned, goal.yaw_rad, now_ns, draft.reason))
         if isinstance(draft, SampleDraft):

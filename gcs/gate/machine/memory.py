@@ -8,6 +8,7 @@ one verdict and every accepted one exactly one outcome.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from gcs.frames import Vec3
@@ -51,6 +52,7 @@ class Goal:
     yaw_rad: float | None
     evidence: tuple[tuple[str, float], ...]
     way_back: bool = False  # the vehicle that is sent there began outside
+    speed_m_s: float = math.inf  # the most along the way there
 
 
 @dataclass(frozen=True, slots=True)

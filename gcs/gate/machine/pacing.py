@@ -17,9 +17,14 @@ def way_is_known(step: StepContext, goal_ned: Vec3) -> bool:
     return not step.stale or (paced is not None and paced.goal_ned == goal_ned)
 
 
-def towards(step: StepContext, goal_ned: Vec3, beside_ned: Vec3 | None = None) -> Vec3:
+def towards(
+    step: StepContext,
+    goal_ned: Vec3,
+    beside_ned: Vec3 | None = None,
+    most_m_s: float = math.inf,
+) -> Vec3:
     """The position to send now on the way to `goal_ned`; `beside_ned` is a velocity that is sent
-    with it.
+    with it, `most_m_s` the speed that was asked for.
 
     It goes on from the last report: without another one it stays where it is, and the vehicle slows
     down for it.  Where the report is too old, it is what was sent last on this way: see
@@ -31,7 +36,7 @@ def towards(step: StepContext, goal_ned: Vec3, beside_ned: Vec3 | None = None) -
     if step.stale:
         return goal_ned if memory.paced is None else memory.paced.target_ned
     memory.paced = memory.verifier.paced(
-        goal_ned, memory.pos_ned, memory.v_ned, memory.late_s, beside_ned or STANDING
+        goal_ned, memory.pos_ned, memory.v_ned, memory.late_s, beside_ned or STANDING, most_m_s
     )
     memory.paced_ns = step.now_ns
     return memory.paced.target_ned

@@ -14,6 +14,7 @@ from gcs.enu_text import place
 from gcs.frames import Vec3
 from gcs.gate.airspace.attitude_samples import BeforeThis, lean_of
 from gcs.gate.airspace.bounds import STANDING, Cleared
+from gcs.gate.airspace.pace import why_not_speed
 from gcs.gate.airspace.questions.back_inside import WayBack
 from gcs.gate.airspace.stream_samples import TICK_S, StreamSample
 from gcs.gate.airspace.verifier import Verifier
@@ -103,6 +104,10 @@ def goal(step: StepContext, request: GoTo) -> Refusal | None:
         return _keep(step, home_or_fence_unknown())
     if memory.comes_back:
         return _keep(step, Refusal(Code.OUTSIDE_FENCE, "it is still on its way back inside"))
+    if request.speed_m_s is not None:
+        too_fast = why_not_speed(step.policy, memory.autopilot, request.speed_m_s)
+        if too_fast is not None:
+            return _keep(step, too_fast)
     return _keep(
         step,
         memory.verifier.goal(

@@ -103,6 +103,14 @@ class Flights(Asks):
         yaw = arguments.degrees("heading", yaw_deg=arguments.finite("heading", yaw_deg=yaw_deg))
         return self.request(ipc.Ask(0, "heading", yaw_deg=yaw), wait, timeout_s)
 
+    def speed(
+        self, speed_m_s: float, *, wait: bool = True, timeout_s: float | None = None
+    ) -> Operation:
+        """The most that the next legs of `goto`, `move` and others are flown at, whoever asks for
+        them.  Refused where the policy's `[pace]` has less."""
+        most = arguments.number("speed", speed_m_s=speed_m_s)
+        return self.request(ipc.Ask(0, "speed", speed_m_s=most), wait, timeout_s)
+
     def orbit(
         self,
         radius_m: float,

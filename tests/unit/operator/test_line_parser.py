@@ -45,6 +45,7 @@ def test_every_example_is_understood_and_is_of_its_word(word: request_words.Word
             "goto-global 47.3977601 8.5 491 90 --amsl",
             ipc.Ask(0, "goto", goal_global=(47.3977601, 8.5, 491.0), amsl=True, yaw_deg=90.0),
         ),
+        ("speed 1.5", ipc.Ask(0, "speed", speed_m_s=1.5)),
         ("heading -90", ipc.Ask(0, "heading", yaw_deg=-90.0)),
         ("orbit 5 1", ipc.Ask(0, "orbit", orbit=ipc.Circle(None, 5.0, 1.0, 1.0))),
         (
@@ -255,6 +256,7 @@ def test_a_label_reads_back_as_the_same_request(
         "forward 5 -1 2",
         "goto-global 47.3977601 -8.5 491 --amsl 90",
         "heading 90",
+        "speed 1.5",
         "orbit -5 1 0 3 0 2",
         "disarm --force",
         "mode HOLD",

@@ -245,6 +245,7 @@ def test_every_way_to_go_is_one_request() -> None:
             lambda: station.goto_global(47.1, 8.5, 491, amsl=True),
             ipc.Ask(0, "goto", goal_global=(47.1, 8.5, 491), amsl=True),
         ),
+        (lambda: station.speed(1.5), ipc.Ask(0, "speed", speed_m_s=1.5)),
         (lambda: station.heading(-90), ipc.Ask(0, "heading", yaw_deg=-90)),
     ]
     for ask, expected in ways:
