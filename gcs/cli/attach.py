@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from gcs.cli.options import LINK, SYSID, TAKE, TIMEOUT, with_options
+from gcs.cli.options import ASCII, LINK, SYSID, TAKE, TIMEOUT, with_options
 
 EPILOG = """\
 Examples:
@@ -25,7 +25,7 @@ chooses one.
 
 
 @click.command(epilog=EPILOG)
-@with_options(LINK, TAKE, TIMEOUT)
+@with_options(LINK, TAKE, TIMEOUT, ASCII)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option(
     "--vehicle",
@@ -45,6 +45,7 @@ def attach(
     vehicle: int | None,
     as_json: bool,
     strict: bool,
+    ascii_only: bool,
 ) -> None:
     """Open a second screen on a running station."""
     from gcs.cli.running import joined_station, the_station
@@ -74,6 +75,7 @@ def attach(
     from gcs.tui.app import FlyApp
     from gcs.tui.result import print_result, until_hello
 
-    app = FlyApp(station, until_hello(station), keymap=configured_keymap())
+    events, keymap = until_hello(station), configured_keymap()
+    app = FlyApp(station, events, keymap=keymap, ascii_only=ascii_only)
     app.run()
     ctx.exit(print_result(app.result, lambda line: click.echo(line, err=True)))

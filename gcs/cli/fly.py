@@ -9,6 +9,7 @@ import click
 from gcs.cli import completers
 from gcs.cli.live_option import LIVE, open_beside
 from gcs.cli.options import (
+    ASCII,
     LINK,
     QUIET,
     UTF8,
@@ -88,7 +89,7 @@ def usual_timeout_s() -> float:
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
-@with_options(VERBOSE, QUIET)
+@with_options(VERBOSE, QUIET, ASCII)
 @click.pass_context
 def fly(
     ctx: click.Context,
@@ -104,6 +105,7 @@ def fly(
     strict: bool,
     verbose: bool,
     quiet: bool,
+    ascii_only: bool,
     **of: Unpack[OfStation],
 ) -> None:
     """Fly by keyboard: keys change a pending goal, Enter sends it through the gate."""
@@ -127,7 +129,11 @@ def fly(
     if plain:
         level = log_level(2, quiet=quiet, verbose=verbose)
         ctx.exit(_fly_plain(config, live, min_level=level, as_json=as_json, strict=strict))
-    ctx.exit(_fly_keyboard(config, live, timeout, mission_path, configured_keymap()))
+    ctx.exit(
+        _fly_keyboard(
+            config, live, timeout, mission_path, configured_keymap(), ascii_only=ascii_only
+        )
+    )
 
 
 def _fly_plain(
@@ -184,6 +190,8 @@ def _fly_keyboard(
     timeout_s: float | None,
     mission_path: str,
     keymap: Keymap,
+    *,
+    ascii_only: bool,
 ) -> int:
     needs_a_terminal()
     from gcs import ipc
@@ -204,7 +212,14 @@ def _fly_keyboard(
             return ExitCode.INTERRUPTED
         told = open_beside(station, live, lambda line: click.echo(line, err=True))
         events += [ipc.LogEvent(0, Level.INFO, "live", line.strip()) for line in told]
-    app = FlyApp(station, events, mission_path=mission_path, timeout_s=timeout_s, keymap=keymap)
+    app = FlyApp(
+        station,
+        events,
+        mission_path=mission_path,
+        timeout_s=timeout_s,
+        keymap=keymap,
+        ascii_only=ascii_only,
+    )
     app.run()
     simulated = config.sim is not None
     code = print_result(app.result, lambda line: click.echo(line, err=True), simulated=simulated)

@@ -115,6 +115,11 @@ _RECORD_NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]*")
 UTF8 = Utf8Text()
 SYSID = SystemId()
 
+ASCII = click.Option(
+    ["--ascii", "ascii_only"],
+    is_flag=True,
+    help="Draw the screen in ASCII, as is done where the terminal is not UTF-8.",
+)
 LINK = click.Option(
     ["--link", "links"],
     multiple=True,

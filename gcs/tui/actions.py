@@ -45,6 +45,10 @@ class KeyActions(LeavingApp):
         """Draw every panel anew from the scene."""
         raise NotImplementedError
 
+    def redraw_goal(self) -> None:
+        """Draw what shows the pending goal."""
+        raise NotImplementedError
+
     # ---------------------------------------------------------------- keys: the one door
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -94,7 +98,7 @@ class KeyActions(LeavingApp):
             self.scene.pending_set = True
             self._connection.send(ipc.Pending(pending.goal_enu, pending.yaw_deg))
             self._look_ahead()
-        self.redraw()
+        self.redraw_goal()
 
     def _look_ahead(self) -> None:
         """Ask what the gate would say to the pending goal, where that is due."""
@@ -277,7 +281,8 @@ class KeyActions(LeavingApp):
                 self.scene.answer = Answer(told, REFUSED)
 
     def _log_line(self, text: str, style: str, level: int = 4, time_ns: int | None = None) -> None:
-        self.query_one(LogPanel).tell(text, style, level, time_ns)
+        for panel in self.query(LogPanel):  # none once the screen has been given back
+            panel.tell(text, style, level, time_ns)
 
 
 def _with_file(request: ipc.Ask) -> ipc.Ask:

@@ -30,6 +30,7 @@ from gcs.tui import (
     wind,
 )
 from gcs.tui.actions import KeyActions
+from gcs.tui.ascii_signs import in_ascii, needed
 from gcs.tui.command_line import CommandLine
 from gcs.tui.completion import Known, modes_of
 from gcs.tui.graphs import Graphs
@@ -41,6 +42,7 @@ REDRAW_S = 0.1
 STREAM_S = 0.1
 SMALL_ROWS = 34
 WIDE_COLUMNS = 150
+GOAL_PANELS = ("#goals", "#ahead", "#map", "#height")
 FOLDED_AFTER_S = 2.0
 
 
@@ -60,15 +62,19 @@ class Panel(Widget):
         if not self.display:
             return
         before, self._drawn_for = self._drawn, (self.content_size.width, self.content_size.height)
-        self._drawn = self._draw(*self._drawn_for)
+        self._drawn = self._drawing()
         if self._drawn != before:
             self.refresh()
 
     def render(self) -> RenderableType:
         if self._drawn_for != (self.content_size.width, self.content_size.height):
             self._drawn_for = (self.content_size.width, self.content_size.height)
-            self._drawn = self._draw(*self._drawn_for)
+            self._drawn = self._drawing()
         return self._drawn
+
+    def _drawing(self) -> RenderableType:
+        drawing = self._draw(*self._drawn_for)
+        return in_ascii(drawing) if self.screen.has_class("-ascii") else drawing
 
 
 class MapPanel(Panel):
@@ -107,9 +113,11 @@ class FlyApp(KeyActions):
         mission_path: str = "",
         timeout_s: float | None = None,
         keymap: Keymap = DEFAULT,
+        ascii_only: bool = False,
     ) -> None:
         """`events`: those that came already.  `mission_path`: what the mission key uploads first.
-        `timeout_s`: leave if no vehicle is heard within it; None waits for ever."""
+        `timeout_s`: leave if no vehicle is heard within it; None waits for ever.
+        `ascii_only`: draw without any other sign, as where the terminal is not UTF-8."""
         super().__init__(connection, mission_path, keymap)
         self._bindings = BindingsMap(
             Binding(name, f"press({name!r})", show=False, priority=True) for name in self.bound
@@ -117,6 +125,7 @@ class FlyApp(KeyActions):
         self._timeout_s = timeout_s
         self._first_events = events
         self._subscribed = ""
+        self._ascii = ascii_only or needed()
 
     # ------------------------------------------------------------------------- screen
 
@@ -157,6 +166,8 @@ class FlyApp(KeyActions):
 
     def on_mount(self) -> None:
         loop = asyncio.get_running_loop()
+        self.screen.set_class(self._ascii, "-ascii")
+        self.query_one(LogPanel).ascii_only = self._ascii
         for event in self._first_events:
             self._handle(event)
         self._connection.listen(lambda event: self._hear(loop, event))
@@ -186,6 +197,12 @@ class FlyApp(KeyActions):
 
     def on_mouse_scroll_down(self) -> None:
         self.action_zoom(1)
+
+    def redraw_goal(self) -> None:
+        """Only what a moved goal changes: the sooner it is on the screen."""
+        for name in GOAL_PANELS:
+            for panel in self.query(name).results(Panel):
+                panel.redraw()
 
     def redraw(self) -> None:
         """Draw every panel anew from the scene; ring where an alarm wants it."""

@@ -28,12 +28,15 @@ class Canvas:
         self._dots = [[0] * columns for _ in range(rows)]
         self._styles = [[""] * columns for _ in range(rows)]
         self._glyphs: dict[tuple[int, int], tuple[str, str]] = {}
+        self._used: set[int] = set()
+        """Rows of cells in which anything was drawn."""
 
     def dot(self, x: float, y: float, style: str) -> None:
         column, row = int(x // 2), int(y // 4)
         if 0 <= column < self.columns and 0 <= row < self.rows:
             self._dots[row][column] |= _BITS[int(x) % 2][int(y) % 4]
             self._styles[row][column] = style
+            self._used.add(row)
 
     def line(self, start: Point, end: Point, style: str, *, every: int = 1) -> None:
         """A straight line; `every` 3 draws each third dot."""
@@ -58,6 +61,7 @@ class Canvas:
         for offset, char in enumerate(text):
             if 0 <= column + offset < self.columns and 0 <= row < self.rows:
                 self._glyphs[column + offset, row] = (char, style)
+                self._used.add(row)
 
     def render(self) -> Text:
         """The picture, one line a row of cells; neighbours of one style are one span."""
@@ -65,6 +69,9 @@ class Canvas:
         for row in range(self.rows):
             if row:
                 picture.append("\n")
+            if row not in self._used:
+                picture.append(" " * self.columns)
+                continue
             cells = [self._cell(column, row) for column in range(self.columns)]
             for style, run in itertools.groupby(cells, key=itemgetter(1)):
                 picture.append("".join(char for char, _ in run), style)

@@ -47,7 +47,9 @@ class Graphs:
         for n, (name, value) in enumerate(CURVES):
             points = [((each.time_ns - last_ns) / 1e9, _or_nan(value(each))) for each in shown]
             picture.append("\n" if n else "")
-            picture.append_text(draw([Curve(name, points)], columns, each_rows - LEGEND_ROWS - 1))
+            picture.append_text(
+                draw([Curve(name, points)], columns, each_rows - LEGEND_ROWS - 1, "seconds")
+            )
         return picture
 
 

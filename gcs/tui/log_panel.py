@@ -16,6 +16,7 @@ from textual.widgets import RichLog
 from gcs import ipc
 from gcs.operator import event_text
 from gcs.tui import look
+from gcs.tui.ascii_signs import text_in_ascii
 
 LOG_LINES: Final = 2000
 DEBUG, INFO, WARN = 1, 2, 3
@@ -50,6 +51,7 @@ class LogPanel(RichLog):
         self._last: tuple[str, str, int] = ("", "", INFO)
         self._columns = 0
         self._sought = ""
+        self.ascii_only = False
 
     def tell(self, text: str, style: str, level: int = INFO, time_ns: int | None = None) -> None:
         """`time_ns` of the wall clock; None is now."""
@@ -105,7 +107,7 @@ class LogPanel(RichLog):
         if self._sought and self._sought not in entry.line.plain.lower():
             return
         if entry.level >= self.level or self._sought:
-            line = entry.line
+            line = text_in_ascii(entry.line) if self.ascii_only else entry.line
             if self._sought:
                 line = line.copy()
                 line.highlight_words([self._sought], look.FOUND, case_sensitive=False)

@@ -27,8 +27,9 @@ class Curve:
     points: Sequence[tuple[float, float]]
 
 
-def draw(curves: Sequence[Curve], columns: int, rows: int) -> Text:
-    """The picture, `rows` lines and one of legend a curve.  At most `MAX_CURVES` curves."""
+def draw(curves: Sequence[Curve], columns: int, rows: int, counted: str = "messages") -> Text:
+    """The picture, `rows` lines and one of legend a curve.  At most `MAX_CURVES` curves.
+    `counted`: what one point is."""
     columns, rows = max(columns, LEAST_COLUMNS), max(rows, LEAST_ROWS)
     seen = [(t, v) for curve in curves for t, v in curve.points if math.isfinite(v)]
     if not seen:
@@ -63,7 +64,7 @@ def draw(curves: Sequence[Curve], columns: int, rows: int) -> Text:
         picture.append(f"\n{mark}{curve.name}", f"bold {STYLES[number]}")
         if values:
             now, least, most = (_figure(v) for v in (values[-1], min(values), max(values)))
-            picture.append(f"  last {now}  min {least}  max {most}  ({len(values)} messages)")
+            picture.append(f"  last {now}  min {least}  max {most}  ({len(values)} {counted})")
     return picture
 
 

@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Final
 
 from gcs import ipc
+from gcs.enu_text import labelled_enu
 from gcs.operator import event_text
 
 LEAST_S: Final = 0.5
@@ -68,7 +69,8 @@ class VerdictAhead:
         if told is None:
             return "Enter: asking the gate …"
         if told.goal_code:
-            return f"Enter: refused {told.goal_code}: {told.goal_sentence}"
+            why = told.goal_sentence.replace(f"goal {labelled_enu(goal[0])} is ", "")  # shown above
+            return f"Enter: refused {told.goal_code}: {why}"
         if told.outcome == "accepted":
             return "Enter: accepted, the goal clears"
         if told.outcome == "waits":

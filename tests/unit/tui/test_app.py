@@ -521,3 +521,23 @@ def test_the_map_is_panned_and_z_shows_all_again() -> None:
         assert app.scene.pan_en == (0.0, 0.0)
 
     flown(script)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)])
+def test_a_terminal_that_knows_only_ascii_is_sent_nothing_else(size: tuple[int, int]) -> None:
+    async def run() -> str:
+        station = ListeningStation()
+        app = FlyApp(station, ascii_only=True)
+        async with app.run_test(size=size) as pilot:
+            station.say(ipc.LogEvent(0, 2, "gate", "HOVERING → MOVING"))
+            await pilot.press("right", "question_mark")
+            await drawn(app, pilot)
+            shown = screen_text(app)
+            await pilot.press("escape")
+            await drawn(app, pilot)
+            return shown + screen_text(app)
+
+    shown = asyncio.run(run())
+    assert {sign for sign in shown if not sign.isascii()} == set()
+    assert "pending E +1.00" in shown
+    assert "HOVERING > MOVING" in shown

@@ -113,6 +113,11 @@ def test_tab_goes_as_far_as_is_certain(
     assert complete(text, KNOWN).text.startswith(line)
 
 
+def test_a_word_may_go_on_as_a_longer_word() -> None:
+    assert set(complete("fence ", KNOWN).offers) >= {"on", "off", "fence put"}
+    assert complete("fence of", KNOWN).text == "fence off"
+
+
 def test_files_are_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "field.plan").write_text("{}")
