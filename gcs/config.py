@@ -18,6 +18,7 @@ class SimConfig(msgspec.Struct, frozen=True):
     seed: int = 1
     speedup: float = 1.0
     params: dict[str, float] = {}  # parameters that are set at its start
+    count: int = 1  # so many vehicles, numbered from 1, in rows
 
 
 class StationConfig(msgspec.Struct, frozen=True):
@@ -53,7 +54,8 @@ class StationConfig(msgspec.Struct, frozen=True):
     @property
     def several(self) -> bool:
         """Whether every vehicle that is met is flown, and not one alone."""
-        return self.bridge and self.sim is None and not self.target_sysid
+        one = self.sim is not None and self.sim.count == 1
+        return self.bridge and not one and not self.target_sysid
 
 
 class Wanted(msgspec.Struct, frozen=True):

@@ -46,7 +46,10 @@ def show(
     if seen is None:
         return ExitCode.NO_VEHICLE
     if as_json:
-        click.echo(msgspec.json.encode(seen).decode())
+        told = msgspec.to_builtins(seen)
+        if bridge is not None and len(bridge.vehicles) > 1:
+            told["fleet"] = msgspec.to_builtins(bridge.vehicles)
+        click.echo(msgspec.json.encode(told).decode())
         return ExitCode.DONE
 
     from rich import box

@@ -21,6 +21,8 @@ def words_of(sim: SimConfig, port: int) -> list[str]:
     words = [sys.executable, "-m", "vehicle_sim", "--lifeline"]
     words += ["--autopilot", sim.autopilot, "--seed", str(sim.seed)]
     words += ["--speedup", str(sim.speedup), "--link", f"udpout://127.0.0.1:{port}"]
+    if sim.count > 1:
+        words += ["--count", str(sim.count)]
     if sim.home:
         words += ["--home", sim.home]
     for name, value in sim.params.items():

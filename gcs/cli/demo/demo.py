@@ -30,11 +30,17 @@ if TYPE_CHECKING:
     show_default=True,
     help="Which autopilot the vehicle speaks like.",
 )
+@click.option(
+    "--fleet",
+    is_flag=True,
+    help="Three vehicles with crossing ways: one of two goals is refused.",
+)
 @with_options(LIVE, LOG_DIR, TIMEOUT)
 @click.pass_context
 def demo(
     ctx: click.Context,
     autopilot: str,
+    fleet: bool,
     live: tuple[str, int] | None,
     log_dir: str,
     timeout: float,
@@ -43,17 +49,17 @@ def demo(
     from rich.console import Console
 
     from gcs import resources
-    from gcs.cli.demo.script import MISSION, station_config
+    from gcs.cli.demo.script import MISSION, fleet_config, station_config
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
 
-    config = station_config(autopilot, log_dir, timeout)
+    config = (fleet_config if fleet else station_config)(autopilot, log_dir, timeout)
     mission_path = str(resources.find(MISSION))
     with Interrupts() as interrupts:
         station = StationClient.start(config)
         console = Console(highlight=False)
         open_beside(station, live, lambda line: console.print(line, markup=False))
-        ctx.exit(run_over(station, interrupts, console, mission_path, timeout))
+        ctx.exit(run_over(station, interrupts, console, mission_path, timeout, fleet=fleet))
 
 
 def run_over(
@@ -62,10 +68,12 @@ def run_over(
     console: Console,
     mission_path: str,
     timeout_s: float,
+    *,
+    fleet: bool = False,
 ) -> int:
     """Fly the script with a station that is there already; returns the exit code."""
     from gcs.cli.demo.files import write_beside
-    from gcs.cli.demo.script import SCRIPT, perform, wait_for_all
+    from gcs.cli.demo.script import FLEET_SCRIPT, SCRIPT, perform, wait_for_all, wait_for_fleet
     from gcs.cli.demo.show import FlightPrinter, show_table, show_what_to_do
     from gcs.operator import event_text
     from gcs.operator.conversation import exit_code_of
@@ -78,7 +86,9 @@ def run_over(
         try:
             dialogue.wait_for_vehicle(timeout_s)
             printer.show_connected(dialogue.hello, dialogue.snapshot)
-            for step in SCRIPT:
+            if fleet:
+                wait_for_fleet(dialogue, timeout_s)
+            for step in FLEET_SCRIPT if fleet else SCRIPT:
                 if step.say:
                     wait_for_all(dialogue, flown)
                     printer.show_headline(step.say)

@@ -7,9 +7,14 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
+import msgspec
+
+from gcs import request_words
 from gcs.config import SimConfig, StationConfig
+from gcs.exit_codes import ExitCode
 from gcs.operator.conversation import TrackedRequest
 from gcs.operator.dialogue import Dialogue
+from gcs.operator.errors import ExitError
 from gcs.operator.line_parser import parse_line
 from gcs.request_words import SendRequests
 
@@ -55,9 +60,10 @@ LOOK_S: Final = 1.6
 class Step:
     """One request.  `{mission}` in the line stands for the mission file.
 
-    Where `wait` is False the next step follows the verdict, while this one is still under way.
-    Before the next step `pause_s` pass, of the vehicle's time.  A step that has something to `say`
-    opens a paragraph: it begins when everything before has ended.
+    `vehicle`: of a fleet, the one that it is for.  Where `wait` is False the next step follows the
+    verdict, while this one is still under way.  Before the next step `pause_s` pass, of the
+    vehicle's time.  A step that has something to `say` opens a paragraph: it begins when everything
+    before has ended.
     """
 
     line: str
@@ -65,6 +71,7 @@ class Step:
     say: str = ""
     wait: bool = True
     pause_s: float = 0.0
+    vehicle: int = 0
 
 
 SCRIPT: Final[tuple[Step, ...]] = (
@@ -124,6 +131,63 @@ def station_config(autopilot: str, log_dir: str, timeout_s: float) -> StationCon
     )
 
 
+FLEET: Final = 3
+APART: Final = "refused OTHER_VEHICLE"
+FLEET_SCRIPT: Final[tuple[Step, ...]] = (
+    *(
+        step
+        for number in range(1, FLEET + 1)
+        for step in (
+            Step("arm", say=f"Vehicle {number} up." if number > 1 else "Up.", vehicle=number),
+            Step("takeoff 5", vehicle=number),
+        )
+    ),
+    Step("goto 20 0 5", say="They start 5 m from each other: apart.", wait=False, vehicle=2),
+    Step("goto 0 20 5", vehicle=3),
+    Step(
+        "goto 20 20 5",
+        say="Vehicle 1 flies north-east, and vehicle 2 would cross its way: refused.",
+        wait=False,
+        vehicle=1,
+    ),
+    Step("goto -5 15 5", APART, pause_s=LOOK_S, vehicle=2),
+    Step("goto 20 0 15", say="Ten metres higher it may.", vehicle=2),
+    Step("goto -5 15 15", vehicle=2),
+    *(
+        Step("land", say="Down again." if number == 1 else "", wait=False, vehicle=number)
+        for number in range(1, FLEET + 1)
+    ),
+    Step("disarm", say="Motors off.", vehicle=1),
+)
+"""Each goal in its vehicle's own frame; vehicle 2 starts 5 m east of vehicle 1, vehicle 3 5 m
+north of it."""
+
+
+def fleet_config(autopilot: str, log_dir: str, timeout_s: float) -> StationConfig:
+    """A bridge without clients, which flies all that it meets."""
+    higher = {"px4": "GF_MAX_VER_DIST", "ardupilot": "FENCE_ALT_MAX"}[autopilot]
+    failsafes = {**FAILSAFES_ON[autopilot], higher: 30.0}
+    return StationConfig(
+        bridge=True,
+        sim=SimConfig(autopilot=autopilot, params=failsafes, count=FLEET),
+        log_dir=log_dir,
+        name="fleet",
+        connect_timeout_s=timeout_s,
+    )
+
+
+def wait_for_fleet(dialogue: Dialogue, timeout_s: float) -> None:
+    """Until every vehicle tells where it stands.  Raises ExitError."""
+
+    def all_there() -> bool:
+        met = dialogue.bridge.vehicles if dialogue.bridge else []
+        return sum(each.pos_enu is not None for each in met) == FLEET
+
+    dialogue.wait_until(all_there, timeout_s)
+    if not all_there():
+        raise ExitError(ExitCode.NO_VEHICLE, f"not all {FLEET} vehicles were heard")
+
+
 @dataclass(slots=True)
 class Flown:
     """A step and what became of it."""
@@ -160,7 +224,9 @@ def perform(dialogue: Dialogue, step: Step, mission_path: str) -> Flown:
     line = parse_line(step.line.format(mission=f'"{mission_path}"'))
     assert line is not None
     assert isinstance(line.action, SendRequests)
-    request = dialogue.send(line.action.requests[0])
+    (asked,) = line.action.requests
+    label = f"vehicle {step.vehicle}: {request_words.label(asked)}" if step.vehicle else ""
+    request = dialogue.send(msgspec.structs.replace(asked, vehicle=step.vehicle), label)
     if step.wait:
         dialogue.wait_settled(request, STEP_WAIT_S)
     else:

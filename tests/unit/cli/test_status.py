@@ -88,3 +88,17 @@ def test_json_tells_it_too(capsys: pytest.CaptureFixture[str]) -> None:
     show(seen, 3, as_json=True)
     told = json.loads(capsys.readouterr().out)
     assert told["in_control"] == {"client": 1, "name": "gcs fly, pid 7"}
+
+
+def test_json_of_a_fleet_has_every_vehicle(capsys: pytest.CaptureFixture[str]) -> None:
+    row = ipc.BridgeVehicle(1, "1/1 px4 quadrotor", "HOVERING", "OURS", "NOMINAL")
+    other = msgspec.structs.replace(row, vehicle=2, name="2/1 px4 quadrotor", state="MOVING")
+    seen = FakeStation().snapshot()
+    show(seen, 3, as_json=True, bridge=ipc.BridgeStatus(0, [], [], [row, other]))
+    told = json.loads(capsys.readouterr().out)
+    assert [(each["vehicle"], each["state"]) for each in told["fleet"]] == [
+        (1, "HOVERING"),
+        (2, "MOVING"),
+    ]
+    show(seen, 3, as_json=True, bridge=ipc.BridgeStatus(0, [], [], [row]))
+    assert "fleet" not in json.loads(capsys.readouterr().out)

@@ -14,3 +14,8 @@ def test_its_place_and_parameters_are_passed_on() -> None:
         " --link udpout://127.0.0.1:14000 --home 47,8,400"
         " --param FS_GCS_ENABLE=1 --param WP_SPD=2.5"
     )
+
+
+def test_several_are_one_program() -> None:
+    assert "--count 3" in " ".join(words_of(SimConfig(count=3), 14000))
+    assert "--count" not in words_of(SimConfig(), 14000)
