@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import msgspec
 
@@ -36,6 +37,11 @@ def settled(ask: ipc.Ask, vehicle: Vehicle) -> ipc.Ask | Refusal:
         place_ned = _kept(seen) or _NOWHERE
     else:
         ((field, goal),) = goals.items()
+        turns_to_rad = seen.goal_yaw_rad if seen.state is State.HOVERING else None
+        if field == "move_body" and turns_to_rad is not None:
+            # It may still turn to the heading that it was asked for: that is meant, and kept.
+            seen = replace(seen, yaw_rad=turns_to_rad)
+            ask = msgspec.structs.replace(ask, yaw_deg=math.degrees(turns_to_rad))
         place_ned = _place(field, goal, ask.amsl, seen)
     if isinstance(place_ned, Refusal):
         return place_ned

@@ -72,6 +72,18 @@ def test_forward_is_where_its_nose_points(personality: Personality) -> None:
     assert math.dist(goal, (east, north, up)) == pytest.approx(math.hypot(3.0, 1.0, 0.5), abs=1e-4)
 
 
+def test_forward_right_after_a_heading_is_where_the_nose_turns_to(personality: Personality) -> None:
+    """A heading is complete while the nose still turns."""
+    flight = Flight(personality).hovering(UP_M)
+    flown(flight, "heading", yaw_deg=-90.0)
+    east, north, up = reported_enu(flight)
+    assert flown(flight, move_body=(3.0, 0.0, 0.0)) == pytest.approx(
+        (east - 3.0, north, up), abs=1e-5
+    )
+    flight.run(5.0)
+    assert nose_deg(flight) == pytest.approx(270.0, abs=3.0)
+
+
 def test_a_heading_keeps_the_place_that_it_hovers_at(personality: Personality) -> None:
     flight = Flight(personality).hovering(UP_M)
     goal = flown(flight, goal_enu=(2.0, 2.0, UP_M))

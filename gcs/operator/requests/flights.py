@@ -91,7 +91,7 @@ class Flights(Asks):
         timeout_s: float | None = None,
     ) -> Operation:
         """Fly straight so far where the vehicle's nose points, to the right of that, and up; and
-        hover."""
+        hover.  A heading that it still turns to counts as the one where its nose points."""
         moved = arguments.numbers("forward", forward_m=forward_m, right_m=right_m, up_m=up_m)
         return self.request(ipc.Ask(0, "goto", move_body=moved), wait, timeout_s)
 
