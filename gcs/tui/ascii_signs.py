@@ -40,7 +40,7 @@ def in_ascii(drawing: RenderableType) -> RenderableType:
 
 def text_in_ascii(text: Text) -> Text:
     copy = text.copy()
-    copy.plain = ascii_of(text.plain)
+    copy.plain, copy.overflow = ascii_of(text.plain), "crop"  # an ellipsis is one sign
     return copy
 
 

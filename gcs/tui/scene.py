@@ -143,6 +143,7 @@ class Scene:
                 self.numbers.seen(event)
             case ipc.StateEvent():
                 self.last_move = event
+                self.ahead.outdate()
             case ipc.History():
                 self._note_history(event)
             case ipc.MissionPath(points_enu):

@@ -37,15 +37,22 @@ class VerdictAhead:
     _asked: Goal | None = None
     _asked_id: int = 0
     _asked_s: float = -math.inf
+    _outdated: bool = False
 
     def due(self, goal: Goal, now_s: float) -> bool:
         """Whether to ask now."""
-        return now_s - self._asked_s >= (LEAST_S if goal != self._asked else RENEW_S)
+        news = self._outdated or goal != self._asked
+        return now_s - self._asked_s >= (LEAST_S if news else RENEW_S)
+
+    def outdate(self) -> None:
+        """The gate's state has changed, and with it what it would say."""
+        self._outdated = True
 
     def asked(self, goal: Goal, check_id: int, now_s: float) -> None:
         if goal != self._asked:
             self._told = None
         self._asked, self._asked_id, self._asked_s = goal, check_id, now_s
+        self._outdated = False
 
     def told(self, answer: ipc.Checked) -> None:
         """An answer about an earlier goal says nothing of this one."""

@@ -41,6 +41,8 @@ def test_it_is_asked_for_at_most_twice_a_second_and_renewed_while_the_goal_stays
     assert ahead.due(THERE, 100.0 + LEAST_S)
     assert not ahead.due(HERE, 100.0 + LEAST_S)
     assert ahead.due(HERE, 100.0 + RENEW_S)
+    ahead.outdate()  # as a hold does
+    assert ahead.due(HERE, 100.0 + LEAST_S)
 
 
 @pytest.mark.parametrize(
