@@ -6,6 +6,9 @@ import msgspec
 
 DEFAULT_LINK = "udpin://127.0.0.1:14550"
 """Where vehicles are looked for if nobody says where."""
+DISK_LOW_BYTES = 200_000_000
+DISK_CRITICAL_BYTES = 20_000_000
+"""Less room than that on the disk of the record is too little, or next to none."""
 SIM_SYSID = 1
 """The system id of a vehicle of the station's own: vehicle-sim's default."""
 

@@ -183,6 +183,14 @@ class Note(msgspec.Struct, frozen=True, tag="note", tag_field="type"):
     text: str
 
 
+class Preflight(msgspec.Struct, frozen=True, tag="preflight", tag_field="type"):
+    """What is known of everything that matters before a take-off?  Any operator may ask; nothing
+    is sent to the vehicle for it.  Answered with `PreflightReport`."""
+
+    id: int
+    vehicle: int = 0  # system id of the one that it is about; 0 = the first that was heard
+
+
 class WatchTopics(msgspec.Struct, frozen=True, tag="watch_topics", tag_field="type"):
     """From now on tell me of everything that goes into the record, as the topics of its file.
 
@@ -202,6 +210,7 @@ Command: TypeAlias = (
     | Check
     | Renew
     | Note
+    | Preflight
     | WatchTopics
 )
 
@@ -276,6 +285,36 @@ class Checked(msgspec.Struct, frozen=True, tag="checked", tag_field="type"):
     goal_code: str = ""
     goal_sentence: str = ""
     goal_zone: str = ""
+
+
+class PreflightRow(msgspec.Struct, frozen=True):
+    """One thing that was looked at before a take-off."""
+
+    name: str
+    verdict: str  # pass | caution | fail
+    sentence: str
+    remedies: list[str] = []  # commands that mend it
+    waits: bool = False  # what it is about has not been told yet, and may still come
+
+
+class PreflightReport(msgspec.Struct, frozen=True, tag="preflight_report", tag_field="type"):
+    """The answer to `Preflight`: every row of the list, in its order.
+
+    Two rows are only as good as what the station has read of the vehicle, and it reads neither by
+    itself: `unread` are parameters that shape a stop, each by every name that it may have, for
+    param_get; with `mission_unverified` there is a mission on board for mission_check.
+    """
+
+    id: int
+    rows: list[PreflightRow]
+    vehicle: int = 0  # system id; 0 = none is heard
+    unread: list[list[str]] = []
+    mission_unverified: bool = False
+
+    @property
+    def fails(self) -> bool:
+        """Whether any row does."""
+        return any(row.verdict == "fail" for row in self.rows)
 
 
 class StreamVerdictEvent(msgspec.Struct, frozen=True, tag="stream_verdict", tag_field="type"):
@@ -624,6 +663,7 @@ Event: TypeAlias = (
     | Fences
     | VerdictEvent
     | Checked
+    | PreflightReport
     | StreamVerdictEvent
     | OrbitEvent
     | EndingEvent

@@ -96,6 +96,11 @@ class ShowState:
 
 
 @dataclass(frozen=True, slots=True)
+class ShowPreflight:
+    """Print what matters before a take-off."""
+
+
+@dataclass(frozen=True, slots=True)
 class ShowHelp:
     """Print the words."""
 
@@ -105,7 +110,7 @@ class Quit:
     """Leave in good order."""
 
 
-Action: TypeAlias = SendRequests | FlyVelocity | Wait | ShowState | ShowHelp | Quit
+Action: TypeAlias = SendRequests | FlyVelocity | Wait | ShowState | ShowPreflight | ShowHelp | Quit
 
 
 class BadAskError(ValueError):
@@ -477,6 +482,12 @@ TABLE: Final[tuple[Word, ...]] = (
         "print what the vehicle reports; so does status",
         build=ShowState,
         at_once=_TYPED,
+        doer=Doer.CONSOLE,
+    ),
+    Word(
+        "preflight",
+        "print what passes and what fails before a take-off, and what mends it",
+        build=ShowPreflight,
         doer=Doer.CONSOLE,
     ),
     Word("help", "print these words; so does ?", build=ShowHelp, at_once=_TYPED, doer=Doer.CONSOLE),

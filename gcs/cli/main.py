@@ -44,6 +44,9 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     },
     "One command, then leave": {
         "status": Entry("gcs.cli.oneshot:status", "What the vehicle reports."),
+        "preflight": Entry(
+            "gcs.cli.preflight:preflight", "What passes, and what fails, before a take-off."
+        ),
         "control": Entry("gcs.cli.oneshot:control", "Take control of a flying vehicle."),
         "arm": Entry("gcs.cli.oneshot:arm", "Arm the motors."),
         "takeoff": Entry("gcs.cli.oneshot:takeoff", "Climb above the take-off point and hover."),

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from gcs import ipc, request_words
 from gcs.cli.line_queue import AtOnce, BadLine, LineQueue
 from gcs.exit_codes import ExitCode
-from gcs.operator import event_text, line_parser
+from gcs.operator import event_text, line_parser, preflight
 from gcs.operator.client import Polling, StationEnded
 from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import Dialogue, InterruptSource
@@ -69,6 +69,7 @@ class Plain:
         """The line whose velocity is streamed now."""
         self._velocity_refused = False
         self._refused_velocities = False
+        self._preflight_fails = False
         self._sent_at_once: list[TrackedRequest] = []
         self._until_heard: list[line_parser.Line] = []
 
@@ -128,7 +129,7 @@ class Plain:
                 self._show_help()
             case request_words.Quit():
                 raise _LeaveNowError
-            case request_words.Wait() | request_words.FlyVelocity():
+            case request_words.Wait() | request_words.FlyVelocity() | request_words.ShowPreflight():
                 raise AssertionError("it has its turn")
 
     def _send_at_once(self, line: line_parser.Line) -> None:
@@ -189,6 +190,8 @@ class Plain:
                     lambda: self._dialogue.snapshot is not latest, FRESH_WAIT_S
                 )
                 self._show_state()
+            case request_words.ShowPreflight():
+                self._show_preflight()
             case request_words.ShowHelp():
                 self._show_help()
             case request_words.Quit():
@@ -223,6 +226,14 @@ class Plain:
             self._out(ipc.encode(seen).decode().rstrip())
         else:
             self._out(event_text.state_line(seen, self._dialogue.number))
+
+    def _show_preflight(self) -> None:
+        """Where something fails, a strict script has failed."""
+        report = self._dialogue.look_before_flight()
+        self._preflight_fails |= report.fails
+        if not self._config.as_json:  # else it was told as the event that it is
+            for line in preflight.lines(report):
+                self._out(line)
 
     def _show_help(self) -> None:
         tell = self._err if self._config.as_json else self._out
@@ -276,6 +287,8 @@ class Plain:
         undone = ExitCode.NOT_COMPLETED if self._dropped_lines else ExitCode.DONE
         if self._refused_velocities:
             undone = ExitCode.REFUSED_BY_GATE
+        elif self._preflight_fails:
+            undone = ExitCode.DIFFERENT
         return self._dialogue.first_failure() or undone
 
 

@@ -35,3 +35,4 @@ class Condition(StrEnum):
     VEHICLE_FAILSAFE_WEAK = "vehicle_failsafe_weak"
     VEHICLE_FAILSAFE_ACTIVE = "vehicle_failsafe_active"
     TICK_LATE = "tick_late"
+    PREFLIGHT_FAILED = "preflight_failed"

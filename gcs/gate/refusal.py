@@ -56,6 +56,7 @@ class Code(StrEnum):
     NOT_RUNNING = "NOT_RUNNING"
     BATTERY_REACH = "BATTERY_REACH"
     OTHER_VEHICLE = "OTHER_VEHICLE"
+    PREFLIGHT = "PREFLIGHT"
 
 
 @dataclass(frozen=True, slots=True)

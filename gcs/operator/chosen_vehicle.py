@@ -24,7 +24,7 @@ class ChosenVehicle:
 
     def send(self, command: ipc.Command) -> bool:
         """An abort of an operation names its vehicle by that."""
-        if isinstance(command, ipc.Ask | ipc.Stream):
+        if isinstance(command, ipc.Ask | ipc.Stream | ipc.Preflight):
             command = msgspec.structs.replace(command, vehicle=self._sysid)
         elif isinstance(command, ipc.Check):
             command = ipc.Check(msgspec.structs.replace(command.asked, vehicle=self._sysid))

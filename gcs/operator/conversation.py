@@ -90,6 +90,7 @@ class Conversation:
         """Of all operators; None before they were asked for."""
         self.checked: ipc.Checked | None = None
         self.lines: deque[ipc.LogEvent] = deque(maxlen=KEPT_LINES)
+        self.preflight_report: ipc.PreflightReport | None = None
         self.trouble: ipc.Trouble | None = None
         self.ended: StationEnded | None = None
 
@@ -124,6 +125,16 @@ class Conversation:
         self._last_id += 1
         return ipc.Check(msgspec.structs.replace(request, id=self._last_id))
 
+    def preflight(self) -> ipc.Preflight:
+        """Number a question for what matters before a take-off: what is to be sent."""
+        self._last_id += 1
+        return ipc.Preflight(self._last_id)
+
+    def preflight_answer(self, number: int) -> ipc.PreflightReport | None:
+        """The answer to the question of that number, once it is there."""
+        report = self.preflight_report
+        return report if report is not None and report.id == number else None
+
     def told(self, event: StationEvent) -> TrackedRequest | None:
         """Note what the station says; the request that it answers, if it is one of this talk."""
         match event:
@@ -149,6 +160,8 @@ class Conversation:
                 self.stream_verdict = event
             case ipc.Checked():
                 self.checked = event
+            case ipc.PreflightReport():
+                self.preflight_report = event
             case ipc.OperationList(_, operations):
                 self.operations = {each.id: each for each in operations}
             case ipc.Operation() if self.operations is not None:

@@ -190,6 +190,16 @@ class Dialogue(Conversation):
                 break
         return done
 
+    def look_before_flight(self) -> ipc.PreflightReport:
+        """What the station knows now of everything that matters before a take-off."""
+        asked = self.preflight()
+        self._connection.send(asked)
+        self.wait_until(lambda: self.preflight_answer(asked.id) is not None, START_WAIT_S)
+        report = self.preflight_answer(asked.id)
+        if report is None:
+            raise ExitError(ExitCode.BUG, f"the station said nothing for {START_WAIT_S:g} s")
+        return report
+
     def take_control(self) -> TrackedRequest | None:
         """Take control of a vehicle that flies without us; None if there is no need."""
         assert self.snapshot is not None

@@ -12,6 +12,7 @@ north, times seconds.
 
 from __future__ import annotations
 
+import contextlib
 import threading
 import time
 from collections import deque
@@ -23,7 +24,7 @@ import msgspec
 from gcs import ipc
 from gcs.frames import Vec3
 from gcs.gate.refusal import Code
-from gcs.operator import arguments
+from gcs.operator import arguments, preflight
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.conversation import Conversation
 from gcs.operator.failures import BadArgument, Disconnected, NotCompleted, NotHeard, Refused
@@ -35,6 +36,8 @@ from gcs.operator.stream import Stream
 
 TELEMETRY_WAIT_S = 5.0
 ANSWER_WAIT_S = 10.0
+LOOK_S = 0.5
+"""Between two looks at what may still come."""
 KEPT_EVENTS = 10_000
 """Of an `events()` that is not read; the oldest are forgotten."""
 
@@ -247,6 +250,34 @@ class Station(Flights, Missions, Parameters):
         clears, also while the vehicle stands on the ground or flies elsewhere.
         """
         return self.check(goto_of("check_goto", east_m, north_m, up_m, yaw_deg))
+
+    def preflight(self, timeout_s: float = ANSWER_WAIT_S) -> ipc.PreflightReport:
+        """Everything that matters before a take-off, row by row; `fails` says whether any does.
+
+        What the station has not read of the vehicle is read first, and what comes slowly is waited
+        for, up to `timeout_s`.  Raises Disconnected.
+        """
+        deadline_s = time.monotonic() + timeout_s
+        report = self._preflight()
+        while preflight.waits(report) and time.monotonic() < deadline_s:
+            self.wait_until(lambda: False, LOOK_S)
+            report = self._preflight()
+        for alternatives in preflight.to_read(report):
+            for ask in alternatives:
+                with contextlib.suppress(Refused, NotCompleted):
+                    self.request(ask, True, timeout_s)
+                    break
+        return self._preflight()
+
+    def _preflight(self) -> ipc.PreflightReport:
+        with self._changed:
+            asked = self.talk.preflight()
+        self.tell(asked)
+        self.wait_until(lambda: self.talk.preflight_answer(asked.id) is not None, ANSWER_WAIT_S)
+        report = self.talk.preflight_answer(asked.id)
+        if report is None:
+            raise NotHeard("the station tells nothing", ANSWER_WAIT_S)
+        return report
 
     def _checked(self, number_sent: int) -> ipc.Checked | None:
         answer = self.talk.checked

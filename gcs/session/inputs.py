@@ -143,9 +143,10 @@ class RecorderChanged:
 
 @dataclass(frozen=True, slots=True)
 class RecorderGrew:
-    """How much has been written, for the screen."""
+    """How much has been written, for the screen, and how much room the disk has for more."""
 
     size_bytes: int
+    free_bytes: int | msgspec.UnsetType = msgspec.UNSET  # unset, it is not in the record
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
+from gcs.config import DISK_CRITICAL_BYTES, DISK_LOW_BYTES
 from gcs.session.inputs import DiskLow
 
 LOOK_NS = 10_000_000_000
@@ -23,8 +24,8 @@ class Threshold:
     """Until it is full, at the rate of this record so far."""
 
 
-LOW = Threshold(200_000_000, 20 * 60.0)
-CRITICAL = Threshold(20_000_000, 2 * 60.0)
+LOW = Threshold(DISK_LOW_BYTES, 20 * 60.0)
+CRITICAL = Threshold(DISK_CRITICAL_BYTES, 2 * 60.0)
 
 FreeBytes: TypeAlias = Callable[[], int | None]
 """How much room there is; None where that is unknown."""
@@ -39,13 +40,15 @@ class DiskWatch:
         self._start_ns = now_ns
         self._look_at_ns = now_ns
         self._told = 0
+        self.free_bytes: int | None = None
+        """As it was looked at last."""
 
     def look(self, written_bytes: int, now_ns: int) -> DiskLow | None:
         """`written_bytes` since the beginning, in all files.  Does nothing before it is due."""
         if now_ns < self._look_at_ns:
             return None
         self._look_at_ns = now_ns + LOOK_NS
-        free = self._free_bytes()
+        free = self.free_bytes = self._free_bytes()
         if free is None:
             return None
         left_s = self._left_s(free, written_bytes, now_ns)

@@ -12,6 +12,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Final, TypeAlias
 
+import msgspec
+
 from gcs.record.parts import RecordLost, RecordResumed, RecordRotated
 from gcs.record.writer import Recorder
 from gcs.report import FrameItem, FramesItem, GeodeticItem, PoseItem, RecordItem
@@ -145,13 +147,15 @@ class Recording:
                     yield RecorderChanged(True, str(path), text)
                 case RecordRotated(path):
                     yield RecorderChanged(True, str(path), f"recording goes on in {path}")
+        disk, low = self._disk, None
+        if disk is not None and not recorder.failed:
+            low = disk.look(recorder.bytes_written, now_ns)
         if recorder.bytes_written - self._told_bytes >= GREW_STEP_BYTES:
             self._told_bytes = recorder.bytes_written
-            yield RecorderGrew(self._told_bytes)
-        if self._disk is not None and not recorder.failed:
-            low = self._disk.look(recorder.bytes_written, now_ns)
-            if low is not None:
-                yield low
+            free = None if disk is None else disk.free_bytes
+            yield RecorderGrew(self._told_bytes, msgspec.UNSET if free is None else free)
+        if low is not None:
+            yield low
 
     def close(self, now_ns: int) -> bool:
         """Finish the file; whether every byte reached the disk.  Closing twice says the same."""

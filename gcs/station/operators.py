@@ -168,8 +168,8 @@ class Operators:
                 return [*self.subscriptions.subscribe(operator, names, now_ns)]
             case ipc.ListOperations(number):
                 return [Emit(ipc.OperationList(number, self._operations.listed()), operator)]
-            case ipc.Check():
-                return []  # `operator_lines.py` answers it: no part of an operator's is asked
+            case ipc.Check() | ipc.Preflight():
+                return []  # answered before: no part of an operator's is asked
             case ipc.Renew(number):
                 operation = self._operations.get(number)
                 if operation is not None and operation.client == operator:

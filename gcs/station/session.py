@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import assert_never
 
+import msgspec
+
 from gcs import ipc
 from gcs.bridge.effects import (
     AboutVehicle,
@@ -91,6 +93,7 @@ from gcs.station.history import History
 from gcs.station.links import Links
 from gcs.station.operator_lines import line
 from gcs.station.operators import Operators
+from gcs.station.preflight import Itself, before_arming, report
 from gcs.station.queue import WorkQueue
 from gcs.station.separation import Separation
 from gcs.station.signatures import NO_KEYS, Keys, Signatures
@@ -168,6 +171,7 @@ class Session:
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
         self._history = History()
+        self._free_bytes: int | None = None
         self._snapshots = 0
         """That were due."""
         self._faults = 0
@@ -288,6 +292,8 @@ class Session:
                 return [*of_clients, *of_vehicles, *self._ticks.wake(now_ns)]
             case OperatorJoined():
                 return self._welcome(given, now_ns)
+            case OperatorLine(operator, ipc.Preflight() as asked):
+                return [Emit(self._preflight(asked, now_ns), operator)]
             case OperatorLine(operator, command):
                 bridge = self._bridge.bridge if self._bridge.open else None
                 parts = self._operators, self._vehicles, self._separation, bridge
@@ -314,10 +320,13 @@ class Session:
                 return self._vehicles.each(lambda each: each.file(given, now_ns))
             case RecorderChanged():
                 return self._recorder(given)
-            case RecorderGrew(size_bytes):
+            case RecorderGrew(size_bytes, free_bytes):
                 self._recorded_bytes = size_bytes
+                if not isinstance(free_bytes, msgspec.UnsetType):
+                    self._free_bytes = free_bytes
                 return []
-            case DiskLow():
+            case DiskLow(free_bytes):
+                self._free_bytes = free_bytes
                 return [_disk_low(given)]
             case SimLine(text):
                 return [sim_line(text, now_ns)]
@@ -469,6 +478,9 @@ class Session:
             return work + self._waiting.second(now_ns)
         if now_ns - self._incoming.other_station_ns > self._times.real_ns(OTHER_STATION_NS):
             work.append(condition(Condition.OTHER_STATION, False, "it is gone"))
+        if self._setup.policy.arming.preflight == "no_fail":
+            itself = self._itself(now_ns)
+            work += self._vehicles.each(lambda each: before_arming(each, itself))
         wanted = self._operators.missing_messages(first.telemetry, now_ns)
         work += self._vehicles.each(lambda each: each.second(now_ns))
         return [*work, ForOwner(FIRST_SLOT, tuple(first.send_own(wanted, now_ns)))]
@@ -487,6 +499,22 @@ class Session:
             *(Emit(event, operator) for event in self._history.told()),
             *self._operators.join(operator, joined.name, joined.hold_on_leave),
         ]
+
+    # ------------------------------------------------------------------------- preflight
+
+    def _preflight(self, asked: ipc.Preflight, now_ns: int) -> ipc.PreflightReport:
+        owner = self._vehicles.owner_for(asked.vehicle)
+        refusal = self._vehicles.refusal(owner, now_ns) if owner == STATION else None
+        return report(asked, self._vehicles.of_owner(owner), refusal, self._itself(now_ns))
+
+    def _itself(self, now_ns: int) -> Itself:
+        return Itself(
+            now_ns,
+            self._recording,
+            self._log_path,
+            self._free_bytes,
+            self._setup.policy.arm_requires_recording,
+        )
 
     # ---------------------------------------------------------------------------- record
 

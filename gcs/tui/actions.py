@@ -85,10 +85,10 @@ class KeyActions(LeavingApp):
 
     def _close_help(self) -> bool:
         """Whether there was a page to close."""
-        page = self.query_one("#help")
-        shown = bool(page.display)
-        page.display = False
-        return shown
+        shown = [page for page in self.query("#help, #preflight") if page.display]
+        for page in shown:
+            page.display = False
+        return bool(shown)
 
     # --------------------------------------------------------------- keys: pending goal
 
@@ -230,6 +230,10 @@ class KeyActions(LeavingApp):
     def action_log_level(self) -> None:
         self.scene.answer = Answer(f"log: {self.query_one(LogPanel).cycle_level()}", "")
 
+    def action_preflight(self) -> None:
+        self._connection.send(self.scene.talk.preflight())
+        self.query_one("#preflight").display = True
+
     def action_help(self) -> None:
         self.query_one("#help").display = True
 
@@ -271,6 +275,8 @@ class KeyActions(LeavingApp):
             case request_words.ShowState():
                 seen, number = self.scene.snapshot, self.scene.talk.number
                 self._log_line(event_text.state_line(seen, number), look.PLAIN)
+            case request_words.ShowPreflight():
+                self.action_preflight()
             case request_words.ShowHelp():
                 for each in request_words.help_lines():
                     self._log_line(each, look.PLAIN)

@@ -26,6 +26,7 @@ from gcs.tui import (
     height_panel,
     look,
     map_panel,
+    preflight_page,
     vehicle_panel,
     wind,
 )
@@ -156,6 +157,9 @@ class FlyApp(KeyActions):
         page = Panel(lambda _c, _r: frame_panels.help_table(self.keymap), "help", "keys")
         page.border_subtitle = "any key closes this, Space aborts as well"
         yield page
+        before = Panel(lambda _c, _r: preflight_page.draw(scene), "preflight", "before a take-off")
+        before.border_subtitle = page.border_subtitle
+        yield before
         yield Panel(lambda _c, _r: frame_panels.question(), "question")
         yield Panel(lambda _c, _r: frame_panels.farewell(scene), "farewell")
 

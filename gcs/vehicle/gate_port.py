@@ -38,7 +38,7 @@ OF_THE_STATION: Final = frozenset(
     {Condition.RECORDER_FAILED, Condition.TICK_LATE, Condition.OTHER_STATION}
 )
 """Conditions that every vehicle's gate has, as they are no vehicle's own."""
-RETOLD: Final = frozenset({Condition.VEHICLE_FAILSAFE_WEAK})
+RETOLD: Final = frozenset({Condition.VEHICLE_FAILSAFE_WEAK, Condition.PREFLIGHT_FAILED})
 """Conditions that the gate is told of once more when their reason is another one.  The reasons of
 the others hold numbers, which are others with each message."""
 

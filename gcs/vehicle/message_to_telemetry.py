@@ -148,8 +148,9 @@ def _local_position(
 
 def _system_status(message: m.SysStatus, telemetry: Telemetry) -> Iterator[Update]:
     """SYS_STATUS: battery, and whether the vehicle would arm."""
+    telemetry.prearm_healthy = bool(message.onboard_control_sensors_health & Sensor.PREARM_CHECK)
     if message.onboard_control_sensors_present & Sensor.PREARM_CHECK:
-        telemetry.prearm_ok = bool(message.onboard_control_sensors_health & Sensor.PREARM_CHECK)
+        telemetry.prearm_ok = telemetry.prearm_healthy
     yield from telemetry.health.system_status(message, bool(telemetry.armed))
     if message.voltage_battery not in (0, 0xFFFF):
         telemetry.battery_v = message.voltage_battery / 1e3

@@ -96,6 +96,8 @@ class VehicleParts:
         """That of `telemetry`, 0 before it is heard."""
         self.arming_answer = ""
         """What it was told last when it asked whether it may arm."""
+        self.failing: tuple[str, ...] | None = None
+        """Rows that fail before a take-off, as its gate was told; None: nothing was told yet."""
         self.mission_paused = False
         """A mission was stopped by a hold, and nothing else was flown since."""
         self.restarts = Restarts(max(STEP_NS, times.real_ns(STEP_NS)))
@@ -175,6 +177,10 @@ class VehicleParts:
         work += self.returns.start(telemetry, busy=self.missions.job is not None, now_ns=now_ns)
         self.fence.start(telemetry, now_ns)
         work += self.with_plans_on_board([], now_ns)
+        if self.port.policy.arming.preflight == "no_fail":
+            self.failing = None
+            text = "nothing was looked at yet"
+            work.append(condition(Condition.PREFLIGHT_FAILED, True, text))
         return work + self.ask_for_missing(telemetry, now_ns)
 
     def leave_for_another(self, telemetry: Telemetry) -> list[Work]:

@@ -35,6 +35,8 @@ rtl_blocked = "land"
 allow_force_disarm = true
 fence_switchable = true
 arm_requires_recording = true
+[arming]
+preflight = "no_fail"
 [severities]
 battery_critical = "return"
 vehicle_failsafe_active = "land"

@@ -23,6 +23,7 @@ PARTS = (
     ipc.BridgeLink,
     ipc.BridgeClient,
     ipc.BridgeVehicle,
+    ipc.PreflightRow,
 )
 """Structs inside of others."""
 

@@ -29,6 +29,7 @@ MAY_HELP_LATER: Final = frozenset(
         Code.OTHER_VEHICLE,
         Code.SEVERITY,
         Code.RECORDER_DOWN,
+        Code.PREFLIGHT,
         Code.SUPERSEDED,
         Code.NO_VEHICLE,
         Code.NO_ORIGIN,

@@ -50,6 +50,7 @@ CONDITIONS = {
     "vehicle_failsafe_weak": "some of the vehicle's own failsafes are off",
     "vehicle_failsafe_active": "the vehicle said that it was in an emergency",
     "tick_late": "the station was late",
+    "preflight_failed": "something failed that was looked at before the take-off",
 }
 _ENDED_BADLY = ("timed out", "taken over", "aborted")
 

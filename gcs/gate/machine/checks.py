@@ -36,6 +36,14 @@ def _recorder(step: StepContext) -> Refusal | None:
     return None
 
 
+def _preflight(step: StepContext) -> Refusal | None:
+    failing = [text for name, text in step.memory.conditions if name is Condition.PREFLIGHT_FAILED]
+    if step.policy.arming.preflight == "no_fail" and failing:
+        sentence = f'{failing[0]} (policy: preflight = "no_fail"; gcs preflight)'
+        return Refusal(Code.PREFLIGHT, sentence)
+    return None
+
+
 def _armed(step: StepContext) -> Refusal | None:
     if step.memory.armed:
         return None
@@ -86,6 +94,7 @@ class Check(StrEnum):
 
     SEVERITY = _refused("severity permits motion", _severity)
     RECORDER = _refused("the recorder runs where policy asks for it", _recorder)
+    PREFLIGHT = _refused("nothing fails before a take-off where policy asks for it", _preflight)
     ARMED = _refused("it is armed", _armed)
     ON_GROUND = _refused("it stands on the ground", _on_ground)
     SEVERITY_BUT_FENCE = _refused("nothing but the fence forbids motion", _severity_but_fence)

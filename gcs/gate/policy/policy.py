@@ -227,6 +227,12 @@ class BridgeRules(_Section, frozen=True):
     max_clients: Annotated[int, Meta(ge=1, le=64)]
 
 
+class ArmingRules(_Section, frozen=True):
+    """`preflight`: "no_fail" refuses to arm while any row of `gcs preflight` fails."""
+
+    preflight: Literal["off", "no_fail"]
+
+
 class SigningRules(_Section, frozen=True):
     """`unsigned` is about frames without a signature on a link that has a key."""
 
@@ -322,6 +328,7 @@ class Policy(_Section, frozen=True):
     retarget: Literal["refuse", "replace", "clients"]
     allow_force_disarm: bool
     arm_requires_recording: bool
+    arming: ArmingRules
 
     def braking_of(self, autopilot: str) -> Braking:
         """The autopilot's own; for one that is not listed, the worst of every entry."""

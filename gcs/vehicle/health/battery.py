@@ -138,6 +138,11 @@ class Charge:
         if message.battery_function in PROPULSION:
             self._told[message.id] = message.battery_remaining, now_ns
 
+    @property
+    def told(self) -> bool:
+        """Whether it has told anything of a battery, since it was heard."""
+        return bool(self._told)
+
     def left_pct(self, now_ns: int) -> float | None:
         """None where nobody knows."""
         return min(

@@ -118,6 +118,11 @@ class MissionTold:
             return "another mission of as many items is on board than was verified"
         return ""
 
+    def does_not_clear(self, known: OnBoard | None) -> bool:
+        """Whether the mission on board is one that was read and does not clear."""
+        told, refused = self._told, self._refused
+        return bool(told and refused and known is None and refused.items == told.total)
+
     def replaced(self, known: OnBoard | None) -> str:
         """That what is on board is not what it has told of before; empty where it is."""
         if not self._seen or self._told is None:

@@ -279,6 +279,16 @@ class Missions:
         verified, or where there is none."""
         return self._told.unverified(self._on_board)
 
+    @property
+    def told(self) -> bool:
+        """Whether the vehicle has told what is on board."""
+        return self._told.known
+
+    @property
+    def does_not_clear(self) -> bool:
+        """The mission on board was read, and is none that may be flown."""
+        return self._told.does_not_clear(self._on_board)
+
     def ask_how_many(self, view: VehicleView) -> list[Work]:
         """Ask for the number of items of a vehicle that has told nothing of its mission: a PX4 1.14
         without one sends no MISSION_CURRENT."""

@@ -22,6 +22,7 @@ from gcs.vehicle.parameters.failsafes import (
     CASES,
     FENCE,
     FENCE_ACTION,
+    Finding,
     Limits,
     findings,
     parameters_of,
@@ -260,6 +261,19 @@ class Settings:
         self._limits = replace(self._limits, uploaded=fence)
         # Before its settings were told once, they are still being read.
         return [] if self._told is None else self._summary(telemetry)
+
+    @property
+    def asked(self) -> bool:
+        """Every failsafe was asked for, since the vehicle appeared."""
+        return self._told is not None
+
+    def failsafes(self, telemetry: Telemetry) -> tuple[tuple[Finding, tuple[str, ...]], ...]:
+        """What it does in each case, and the commands that mend what is weak; empty before all of
+        its settings were asked for, and for an autopilot whose settings are not known here."""
+        if self._told is None:
+            return ()
+        found = findings(_whose(telemetry), self._values, self._limits)
+        return tuple((each, tuple(self._command(*one) for one in each.mends)) for each in found)
 
     def without_fence(self, telemetry: Telemetry) -> str:
         """Why no fence of the vehicle's own would stop it; empty where one would."""

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final
 
 from gcs.gate.effects import Level
 from gcs.protocol.autopilot import Autopilot
-from gcs.protocol.parameter_names import names_of
+from gcs.protocol.parameter_names import ParameterName, names_of
 from gcs.protocol.parameters import decode_value
 from gcs.session.work import Log
 from gcs.wire.ids import ParamType
@@ -57,11 +58,45 @@ NO_WORSE_IF_LESS: Final = frozenset({"GUID_TIMEOUT"})
 TYPES: Final = frozenset(int(kind) for kind in ParamType)
 
 
+@dataclass(frozen=True, slots=True)
+class Stops:
+    """What is known of them: `others` than those that the bounds were recorded with, in words, and
+    the commands that set them so again; `unread`, by every name that each of them may have."""
+
+    others: tuple[str, ...] = ()
+    mends: tuple[str, ...] = ()
+    unread: tuple[tuple[str, ...], ...] = ()
+
+
 class StopParameters:
     """Of one vehicle."""
 
     def __init__(self) -> None:
         self._values: dict[str, float] = {}
+        self._names: dict[str, ParameterName] = {}
+        """By the newest name: the one that this vehicle has it under."""
+
+    def known(self, autopilot: str) -> Stops:
+        """Of those that an autopilot of that name has."""
+        recorded = RECORDED.get(autopilot, {})
+        others = {
+            name: value
+            for name, value in recorded.items()
+            if name in self._values and _differ(self._values[name], value)
+        }
+        return Stops(
+            tuple(f"{name} is {self._values[name]:g}, not {v:g}" for name, v in others.items()),
+            tuple(self._command(name, value) for name, value in others.items()),
+            tuple(
+                tuple(each.name for each in names_of(name))
+                for name in recorded
+                if name not in self._values
+            ),
+        )
+
+    def _command(self, newest: str, value: float) -> str:
+        name = self._names[newest]
+        return f"gcs param set {name.name} {value / name.scale:g}"
 
     def heard(self, message: ParamValue, autopilot: Autopilot) -> list[Log]:
         """PARAM_VALUE of its autopilot: a line where the value is news, and not the recorded."""
@@ -72,6 +107,7 @@ class StopParameters:
                 if name.name == message.param_id:
                     kind = ParamType(message.param_type)
                     read = decode_value(message.param_value, kind, autopilot.param_encoding)
+                    self._names[newest] = name
                     return self._told(newest, float(read) * name.scale, recorded)
         return []
 

@@ -87,6 +87,8 @@ class Telemetry:
 
     health: PositionHealth = field(default_factory=lambda: PositionHealth(Gps(), Estimator()))
     prearm_ok: bool | None = None
+    prearm_healthy: bool = False
+    """The same bit of a PX4 1.14, which does not say that it has it: not set, it says nothing."""
     battery_pct: float | None = None
     battery_v: float | None = None
     charge: Charge = field(default_factory=Charge)
@@ -111,6 +113,7 @@ class Telemetry:
         self.return_void |= self.return_up_m is not None
         self.return_up_m, self.return_told = None, False
         self.failsafes, self.acceptance_m, self.prearm_ok = (), None, None
+        self.prearm_healthy = False
         self.mission_seq, self.mission_reached = None, -1
 
     def forget_place(self) -> None:

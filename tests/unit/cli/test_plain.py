@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
+from typing import Any
 
 import pytest
 
@@ -18,8 +20,14 @@ from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInte
 class Session:
     """One run of the console over a pipe and a fake station on a virtual clock."""
 
-    def __init__(self, script: str, config: PlainConfig | None = None, scenario: str = "flight"):
-        self.connection = FakeConnection(FakeStation(scenario))
+    def __init__(
+        self,
+        script: str,
+        config: PlainConfig | None = None,
+        scenario: str = "flight",
+        rows: Sequence[ipc.PreflightRow] = (),
+    ):
+        self.connection = FakeConnection(FakeStation(scenario, preflight_rows=[*rows]))
         self.interrupts = NoInterrupts()
         self.out: list[str] = []
         self.err: list[str] = []
@@ -37,6 +45,9 @@ class Session:
             self.exit_code = plain.run(LineQueue(reader, "<stdin>"))
         finally:
             os.close(reader)
+
+    def of_type(self, kind: str) -> list[dict[str, Any]]:
+        return [told for line in self.out if (told := json.loads(line))["type"] == kind]
 
     @property
     def sent_words(self) -> list[str]:
@@ -361,3 +372,24 @@ def test_ctrl_c_leaves_through_the_station_and_exits_130() -> None:
     assert connection.sent[-1] == ipc.Leave("SIGINT")
     assert "goto 9 0 2: aborted OPERATOR" in told
     assert connection.station.state == "HOLDING"
+
+
+def test_what_matters_before_a_take_off_is_a_line_a_row() -> None:
+    session = Session("preflight\n")
+    assert session.out == [
+        "pass     gps        3D fix, 10 satellites",
+        "CAUTION  failsafes  off",
+        "                    > gcs param set NAV_DLL_ACT 2",
+        "preflight: caution: failsafes",
+    ]
+    assert session.exit_code == ExitCode.DONE
+    (told,) = Session("preflight\n", PlainConfig(as_json=True)).of_type("preflight_report")
+    assert [row["verdict"] for row in told["rows"]] == ["pass", "caution"]
+
+
+def test_a_strict_script_ends_with_1_where_something_fails() -> None:
+    low = ipc.PreflightRow("battery", "fail", "12 %")
+    for strict, code in ((True, ExitCode.DIFFERENT), (False, ExitCode.DONE)):
+        session = Session("preflight\n", PlainConfig(strict=strict), rows=[low])
+        assert session.exit_code == code
+        assert session.out[-1] == "preflight: fails: battery; caution: failsafes"

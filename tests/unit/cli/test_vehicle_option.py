@@ -8,10 +8,12 @@ import pytest
 from gcs.cli import fly, oneshot
 from gcs.cli.mission import live as mission_live
 from gcs.cli.options import station_config
+from gcs.cli.preflight import preflight
 
 COMMANDS = [
     fly.fly,
     oneshot.status,
+    preflight,
     oneshot.goto,
     oneshot.abort,
     mission_live.upload,

@@ -403,6 +403,8 @@ def _script(settings: list[str]) -> Script:
             rules = policy("lab")
         elif not value:
             autopilot = key
+        elif key == "arming.preflight":
+            changes["arming"] = replace(policy("default").arming, preflight=value)
         else:
             words: dict[str, object] = {"yes": True, "no": False}
             if value == "lab":

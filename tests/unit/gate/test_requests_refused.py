@@ -89,6 +89,11 @@ arm_requires_recording=no, RECORDER_FAILED=CAUTION, BATTERY_LOW=CAUTION:
     ... connected; raised BATTERY_LOW; raised RECORDER_FAILED | arm | =, sends ARM, arm accepted
 arm_requires_recording=yes: connected; raised RECORDER_FAILED | arm | =, arm refused RECORDER_DOWN;
     ... says "arm_requires_recording = true"
+# So it needs that nothing fails before a take-off.
+arming.preflight=no_fail, PREFLIGHT_FAILED=CAUTION: connected; raised PREFLIGHT_FAILED
+    ... | arm | =, arm refused PREFLIGHT; says "gcs preflight"
+arming.preflight=off, PREFLIGHT_FAILED=CAUTION: connected; raised PREFLIGHT_FAILED
+    ... | arm | =, sends ARM, arm accepted
 # A refusal by the policy names its key.
 connected | fence-off | =, fence-off refused POLICY;
     ... says "the policy does not allow it: fence_switchable = false"

@@ -56,6 +56,8 @@ class FakeStation:
     stream_told: str = ""
     refusals: dict[ipc.Vec3, tuple[str, str]] = field(default_factory=dict)
     """Goals that are refused, with code and sentence."""
+    preflight_rows: list[ipc.PreflightRow] = field(default_factory=list)
+    """Beside one that passes and a caution."""
 
     def hello(self) -> list[ipc.Event]:
         fence = ipc.FenceShape(
@@ -90,6 +92,15 @@ class FakeStation:
                 outcome = "refused" if code else "accepted"
                 told = ipc.Checked(asked.id, asked.word, outcome, code, sentence, goal_code=code)
                 return [msgspec.structs.replace(told, goal_sentence=sentence)]
+            case ipc.Preflight(number):
+                rows = [
+                    ipc.PreflightRow("gps", "pass", "3D fix, 10 satellites"),
+                    ipc.PreflightRow(
+                        "failsafes", "caution", "off", ["gcs param set NAV_DLL_ACT 2"]
+                    ),
+                    *self.preflight_rows,
+                ]
+                return [ipc.PreflightReport(number, rows, 1)]
             case ipc.Join() | ipc.Subscribe() | ipc.ListOperations() | ipc.WatchTopics():
                 return []
             case ipc.Renew() | ipc.Note():

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from gcs import ipc, request_words
 from gcs.operator.line_parser import LineError, parse_line
-from gcs.request_words import Quit, SendRequests, ShowHelp, ShowState, Wait
+from gcs.request_words import Quit, SendRequests, ShowHelp, ShowPreflight, ShowState, Wait
 
 
 def requests(line: str) -> tuple[ipc.Ask, ...]:
@@ -80,6 +80,7 @@ def test_mission_fly_uploads_then_starts() -> None:
         ("wait 2.5", Wait(2.5)),
         ("state", ShowState()),
         ("status", ShowState()),
+        ("preflight", ShowPreflight()),
         ("help", ShowHelp()),
         ("?", ShowHelp()),
         ("quit", Quit()),

@@ -356,3 +356,15 @@ def test_parameters_are_read_by_name_and_set() -> None:
     assert refused.value.code == "BAD_PARAMETER"
     words = [(ask.word, ask.name, ask.value) for ask in way.sent if isinstance(ask, ipc.Ask)]
     assert words[2] == ("param_set", "RTL_ALT", 20.0)
+
+
+def test_what_matters_before_a_take_off_is_told_row_by_row() -> None:
+    station, way = flying()
+    report = station.preflight()
+    assert [(row.name, row.verdict) for row in report.rows] == [
+        ("gps", "pass"),
+        ("failsafes", "caution"),
+    ]
+    assert not report.fails
+    way.station.preflight_rows.append(ipc.PreflightRow("battery", "fail", "12 %"))
+    assert station.preflight().fails

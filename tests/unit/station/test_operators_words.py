@@ -45,6 +45,7 @@ commands = st.one_of(
     st.builds(ipc.Check, asks),
     st.builds(ipc.Renew, st.integers()),
     st.builds(ipc.Note, st.text()),
+    st.builds(ipc.Preflight, st.integers(), st.integers(-1, 3)),
     st.builds(ipc.Join, st.text()),
     st.builds(
         ipc.Stream,
@@ -99,6 +100,7 @@ def test_every_kind_of_command_is_tried() -> None:
         ipc.Check,
         ipc.Renew,
         ipc.Note,
+        ipc.Preflight,
         ipc.Join,
         ipc.Pending,
         ipc.WatchTopics,

@@ -26,7 +26,8 @@ class ListeningStation:
 
     def send(self, command: ipc.Command) -> bool:
         wire = ipc.decode_command(ipc.encode(command))
-        (self.looked if isinstance(wire, ipc.Check | ipc.Subscribe) else self.sent).append(wire)
+        looks = isinstance(wire, ipc.Check | ipc.Preflight | ipc.Subscribe)
+        (self.looked if looks else self.sent).append(wire)
         self.say(*self.station.handle(wire, self.time_s))
         return True
 

@@ -93,11 +93,15 @@ refuse_while_something_waits_for_a_position: Final = Branch(
 )
 arm_when_there_is_a_position: Final = Branch(
     when=(Guard.NO_POSITION_YET, Guard.ON_GROUND, Guard.DISARMED),
-    needs=(Check.SEVERITY, Check.RECORDER),
+    needs=(Check.SEVERITY, Check.RECORDER, Check.PREFLIGHT),
     reply=Reply.ACCEPTED,
     do=(Action.AWAIT_POSITION,),
 )
-arm: Final = Branch(needs=(Check.SEVERITY, Check.RECORDER), reply=Reply.ACCEPTED, do=(Action.ARM,))
+arm: Final = Branch(
+    needs=(Check.SEVERITY, Check.RECORDER, Check.PREFLIGHT),
+    reply=Reply.ACCEPTED,
+    do=(Action.ARM,),
+)
 take_off: Final = Branch(
     needs=(Check.ARMED, Check.ON_GROUND, Check.SEVERITY, Check.CLIMB),
     reply=Reply.ACCEPTED,

@@ -1,0 +1,107 @@
+"""`gcs preflight`: everything that matters before a take-off, and what to do about it."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import click
+
+from gcs.cli.common_options import COMMON, MeetsVehicle
+from gcs.cli.options import asked_for, log_level, station_config, typed, with_options
+from gcs.exit_codes import ExitCode
+from gcs.operator.warning_filter import WARNING
+
+if TYPE_CHECKING:
+    from gcs import ipc
+    from gcs.cli.progress import ProgressDisplay
+    from gcs.operator.dialogue import Dialogue
+
+EXITS = (
+    "Exit codes: 0 nothing fails (cautions may be told), 1 something fails, 2 usage, 3 no vehicle, "
+    "9 address in use, 130 interrupted."
+)
+LOOK_S = 0.5
+"""Between two looks at what may still come."""
+READ_S = 15.0
+"""For one thing that is read of the vehicle."""
+
+
+@click.command(cls=MeetsVehicle, epilog=f"Example: gcs preflight --json\n\n{EXITS}")
+@with_options(*COMMON)
+def preflight(
+    links: tuple[str, ...],
+    vehicle: int | None,
+    policy: str,
+    sign_key: str,
+    log_dir: str,
+    timeout: float,
+    take: bool,
+    as_json: bool,
+    verbose: bool,
+    quiet: bool,
+) -> None:
+    """Look at everything that matters before a take-off, on the vehicle and in the station.
+
+    Tells pass, caution or fail of each, and the commands that mend it.  What comes slowly is waited
+    for, up to --timeout; the mission on board and the parameters that shape a stop are read.
+    """
+    from gcs.cli import oneshot_session
+
+    setup = station_config(
+        links,
+        policy,
+        log_dir,
+        name="preflight",
+        timeout_s=timeout,
+        vehicle=vehicle,
+        sign_key=sign_key,
+    )
+    how = oneshot_session.OneShotConfig(
+        timeout,
+        0.0,
+        as_json,
+        "preflight",
+        anywhere=not typed("links"),
+        placed=False,  # that there is no position is one of the rows
+        take=take,
+        wanted=asked_for(),
+        min_level=log_level(WARNING, quiet=quiet, verbose=verbose),
+        quiet=quiet,
+        told=False,
+    )
+    task = partial(_look, as_json=as_json, timeout_s=timeout)
+    click.get_current_context().exit(oneshot_session.run(setup, how, task))
+
+
+def _look(
+    dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool, timeout_s: float
+) -> ExitCode:
+    from gcs import ipc
+    from gcs.operator.preflight import lines, to_read
+
+    report = _settled(dialogue, timeout_s)
+    for alternatives in to_read(report):
+        for ask in alternatives:
+            if dialogue.wait_settled(dialogue.send(ask), READ_S).completed:
+                break
+    report = dialogue.look_before_flight()
+    display.clear()
+    if as_json:
+        click.echo(ipc.encode(report).decode().rstrip())
+    else:
+        click.echo("\n".join(lines(report)))
+    return ExitCode.DIFFERENT if report.fails else ExitCode.DONE
+
+
+def _settled(dialogue: Dialogue, timeout_s: float) -> ipc.PreflightReport:
+    """The report once nothing is still to come, or the time is over."""
+    from gcs.operator.preflight import waits
+
+    report = dialogue.look_before_flight()
+    left_s = timeout_s
+    while waits(report) and left_s > 0.0:
+        dialogue.wait_until(lambda: False, LOOK_S)
+        left_s -= LOOK_S
+        report = dialogue.look_before_flight()
+    return report
