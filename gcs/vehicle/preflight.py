@@ -218,8 +218,8 @@ def _arming(seen: Known) -> Found:
         why = seen.why_not_arm or "it does not say that it would arm"
         return Found(Verdict.CAUTION, why, waits=True)
     if not seen.prearm_ok:
-        why = seen.why_not_arm or "it has not told why"
-        return Found(Verdict.FAIL, f"the vehicle would not arm: {why}")
+        why = seen.why_not_arm or "it has not told why yet (an ArduPilot does every 30 s)"
+        return Found(Verdict.FAIL, f"the vehicle would not arm: {why}", waits=not seen.why_not_arm)
     return Found(Verdict.PASS, "the vehicle would arm")
 
 
