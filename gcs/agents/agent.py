@@ -165,7 +165,7 @@ class Agent:
             return {"outcome": "accepted"}
         asks = action in ASKS_A_PERSON
         label = request_words.label(ask)
-        verdict = self._verdicts.issue(
+        verdict = self._verdicts.keep(
             ask,
             label,
             situation,

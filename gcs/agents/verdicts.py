@@ -75,7 +75,7 @@ class Verdicts:
         self._all: dict[str, Verdict] = {}
         self._unused: set[str] = set()
 
-    def issue(
+    def keep(
         self,
         ask: ipc.Ask,
         label: str,

@@ -23,7 +23,7 @@ GOTO = ipc.Ask(0, "goto", goal_enu=(4.0, 0.0, 3.0))
 
 def issued() -> tuple[Verdicts, Verdict]:
     verdicts = Verdicts("mine")
-    return verdicts, verdicts.issue(GOTO, "goto 4 0 3", THEN, 0)
+    return verdicts, verdicts.keep(GOTO, "goto 4 0 3", THEN, 0)
 
 
 def code(found: Verdict | Denied) -> str:
@@ -66,7 +66,7 @@ def test_it_is_for_its_own_request() -> None:
 
 def test_numbers_of_other_sessions_are_unknown() -> None:
     verdicts, verdict = issued()
-    other = Verdicts("other").issue(GOTO, "goto 4 0 3", THEN, 0)
+    other = Verdicts("other").keep(GOTO, "goto 4 0 3", THEN, 0)
     assert code(verdicts.take(other.number, "goto", THEN, 1)) == "UNKNOWN_VERDICT"
     assert other.number != verdict.number
 
@@ -74,7 +74,7 @@ def test_numbers_of_other_sessions_are_unknown() -> None:
 def test_old_ones_are_forgotten_and_so_refused() -> None:
     verdicts, first = issued()
     for _ in range(KEPT):
-        last = verdicts.issue(GOTO, "goto 4 0 3", THEN, 0)
+        last = verdicts.keep(GOTO, "goto 4 0 3", THEN, 0)
     assert code(verdicts.take(first.number, "goto", THEN, 1)) == "UNKNOWN_VERDICT"
     assert code(verdicts.take(last.number, "goto", THEN, 1)) == ""
 

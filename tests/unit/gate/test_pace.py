@@ -230,15 +230,23 @@ def test_the_stop_from_the_asked_speed_keeps_every_limit(
 
 @pytest.mark.parametrize("autopilot", AUTOPILOTS)
 @given(goal=places, pos=places, v=velocities, late_s=lates)
-def test_the_target_is_on_the_way_and_never_behind_the_goal(
+@example(goal=at(1, 0, 1), pos=at(0, 0, 49.5), v=at(1, 0, 2), late_s=0.5)
+def test_the_target_is_on_the_way_no_farther_than_the_goal_and_behind_only_to_brake(
     autopilot: str, goal: Vec3, pos: Vec3, v: Vec3, late_s: float
 ) -> None:
+    """`[pace].back_m_s` is asked for by that much over `follow_per_s` behind the vehicle."""
+    rules = DEFAULT.pace_of(autopilot)
     sent = field(autopilot).paced(goal, pos, v, late_s).target_ned
-    for a, x, b in zip(pos, sent, goal, strict=True):
-        assert min(a, b) - 1e-9 <= x <= max(a, b) + 1e-9
-    north, east = goal[0] - pos[0], goal[1] - pos[1]
-    across = north * (sent[1] - pos[1]) - east * (sent[0] - pos[0])
-    assert abs(across) <= 1e-6 * max(1.0, math.hypot(north, east))
+    north, east, down = (b - a for a, b in zip(pos, goal, strict=True))
+    left_m = math.hypot(north, east)
+    gone = [x - a for a, x in zip(pos, sent, strict=True)]
+    across = north * gone[1] - east * gone[0]
+    assert abs(across) <= 1e-6 * max(1.0, left_m)
+    ahead_m = (north * gone[0] + east * gone[1]) / left_m if left_m > 0.0 else math.hypot(*gone[:2])
+    behind_m = rules.level.back_m_s / rules.level.follow_per_s
+    assert -behind_m - 1e-9 <= ahead_m <= left_m + 1e-9
+    behind_m = rules.vertical.back_m_s / rules.vertical.follow_per_s
+    assert -behind_m - 1e-9 <= math.copysign(1.0, down) * gone[2] <= abs(down) + 1e-9
 
 
 @pytest.mark.parametrize("autopilot", AUTOPILOTS)
