@@ -323,7 +323,7 @@ def known(vehicle: Vehicle, now_ns: int) -> Known | None:
         battery_pct=telemetry.charge.left_pct(now_ns),
         battery_v=telemetry.battery_v,
         prearm_ok=telemetry.prearm_healthy or telemetry.prearm_ok,
-        why_not_arm=vehicle.words.reasons_not_to_arm(telemetry.custom_mode, now_ns, now_ns),
+        why_not_arm=vehicle.words.against_arming(telemetry.custom_mode, now_ns, now_ns),
         on_ground=gate.memory.on_ground,
         failsafes=vehicle.settings.failsafes(telemetry),
         failsafes_asked=vehicle.settings.asked,

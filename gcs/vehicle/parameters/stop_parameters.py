@@ -55,6 +55,9 @@ RECORDED: Final[Mapping[str, Mapping[str, float]]] = {
 NO_WORSE_IF_LESS: Final = frozenset({"GUID_TIMEOUT"})
 """The sooner it stops by itself where setpoints are silent, the shorter the way."""
 
+SHORTER_IS_SAFER: Final = frozenset({"GUID_TIMEOUT"})
+"""Less than the recorded value makes no stop longer; `gcs fence put` makes it less."""
+
 TYPES: Final = frozenset(int(kind) for kind in ParamType)
 
 
@@ -83,6 +86,7 @@ class StopParameters:
             name: value
             for name, value in recorded.items()
             if name in self._values and _differ(self._values[name], value)
+            if name not in SHORTER_IS_SAFER or self._values[name] > value
         }
         return Stops(
             tuple(f"{name} is {self._values[name]:g}, not {v:g}" for name, v in others.items()),

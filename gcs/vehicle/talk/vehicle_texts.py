@@ -183,7 +183,12 @@ class Words:
         return "; ".join(dict.fromkeys(texts))
 
     def reasons_not_to_arm(self, custom_mode: int, since_ns: int, now_ns: int) -> str:
-        """Why arming was refused, asked for since `since_ns`: texts, and failed arming checks."""
+        """Why arming was refused, asked for since `since_ns`; else what it warned of just now."""
+        return self.against_arming(custom_mode, since_ns, now_ns) or self.reasons(now_ns)
+
+    def against_arming(self, custom_mode: int, since_ns: int, now_ns: int) -> str:
+        """What it has said against an arming, asked for since `since_ns` or not: texts, and failed
+        arming checks."""
         prearm_ns = now_ns - self._times.real_ns(PREARM_AGE_NS)
         texts = [
             said.text.partition(": ")[2] or said.text
@@ -192,7 +197,7 @@ class Words:
             or (time_ns >= prearm_ns and said.text.startswith(PREARM))
         ]
         texts += self._checks.against_arming(custom_mode)
-        return "; ".join(dict.fromkeys(texts)) or self.reasons(now_ns)
+        return "; ".join(dict.fromkeys(texts))
 
 
 def logged(said: Iterable[Said]) -> list[Log]:

@@ -55,3 +55,13 @@ def test_a_stop_that_comes_sooner_is_no_news_and_a_later_one_is() -> None:
 
 def test_of_other_parameters_nothing_is_told() -> None:
     assert told(PX4, "MPC_THR_HOVER", 0.5, 0.6) == [[], []]
+
+
+@pytest.mark.parametrize(("value", "others"), [(3.0, 0), (0.5, 0), (9.0, 1)])
+def test_a_vehicle_that_waits_less_for_setpoints_stops_no_later(value: float, others: int) -> None:
+    part = StopParameters()
+    part.heard(ParamValue(value, 900, 0, "GUID_TIMEOUT", ParamType.REAL32), ARDUPILOT)
+    known = part.known("ardupilot")
+    assert len(known.others) == len(known.mends) == others
+    assert ("GUID_TIMEOUT",) not in known.unread
+    assert ("WP_SPD", "WPNAV_SPEED") in known.unread
