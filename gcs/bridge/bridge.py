@@ -41,7 +41,7 @@ from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.autopilot import Autopilot
 from gcs.protocol.effects import Address
 from gcs.protocol.enforced_sysid import Hears
-from gcs.protocol.transfer import Timing
+from gcs.protocol.transfers.transfer import Timing
 from gcs.wire.frame import Frame
 from gcs.wire.ids import MsgId
 from gcs.wire.messages import ParamSet, ParamValue

@@ -37,7 +37,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "demo": Entry(
             "gcs.cli.demo.demo:demo", "A whole flight in a minute, on a simulated vehicle."
         ),
-        "fly": Entry("gcs.cli.fly:fly", "The keyboard ground station, or --plain lines."),
+        "fly": Entry("gcs.cli.fly.fly:fly", "The keyboard ground station, or --plain lines."),
         "bridge": Entry("gcs.cli.bridge.bridge:bridge", "MAVLink clients fly it through the gate."),
         "mcp": Entry("gcs.cli.mcp.mcp:mcp", "An agent flies it through the gate (MCP)."),
         "live": Entry("gcs.cli.live:live", "The flight in a viewer such as Foxglove, as it flies."),
@@ -70,7 +70,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     },
     "A station that runs": {
         "stations": Entry("gcs.cli.stations:stations", "The running stations of this user."),
-        "attach": Entry("gcs.cli.attach:attach", "A second screen, or --plain lines, on one."),
+        "attach": Entry("gcs.cli.fly.attach:attach", "A second screen, or --plain lines, on one."),
         "operations": Entry("gcs.cli.operations:operations", "What is under way; wait, stop."),
     },
     "Files": {
@@ -87,11 +87,12 @@ COMMANDS: dict[str, dict[str, Entry]] = {
             "gcs.cli.vehicle_log:vehicle_log", "Flight logs that the vehicle keeps: list, get."
         ),
         "fence": Entry(
-            "gcs.cli.plan_parts:fence",
+            "gcs.cli.mission.plan_parts:fence",
             "A vehicle's own fence: check, show, upload, download, clear, put.",
         ),
         "rally": Entry(
-            "gcs.cli.plan_parts:rally", "Rally points: check, show, upload, download, clear."
+            "gcs.cli.mission.plan_parts:rally",
+            "Rally points: check, show, upload, clear.",
         ),
         "key": Entry("gcs.cli.key:key", "Signing keys: new, show, install on a vehicle, remove."),
         "topic": Entry(

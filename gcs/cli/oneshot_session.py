@@ -25,9 +25,9 @@ from gcs.operator.client import Polling, StationClient, Way
 from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
+from gcs.operator.event_text import WARNING, WarningFilter
 from gcs.operator.interrupts import Interrupts
 from gcs.operator.standstill import Standstill
-from gcs.operator.warning_filter import WARNING, WarningFilter
 from gcs.request_words import REQUESTS, SendRequests
 from gcs.shell.stations import Description
 

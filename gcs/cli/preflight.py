@@ -10,7 +10,7 @@ import click
 from gcs.cli.common_options import COMMON, MeetsVehicle
 from gcs.cli.options import asked_for, log_level, station_config, typed, with_options
 from gcs.exit_codes import ExitCode
-from gcs.operator.warning_filter import WARNING
+from gcs.operator.event_text import WARNING
 
 if TYPE_CHECKING:
     from gcs import ipc

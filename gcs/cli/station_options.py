@@ -10,7 +10,7 @@ import click
 from click.core import ParameterSource
 
 from gcs.cli.options import CLIENT_KEY, LOG_DIR, POLICY, SIGN_KEY, UTF8, FiniteRange, Seed
-from gcs.cli.record_options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
+from gcs.cli.records.options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
 from gcs.operator.number_text import read_number
 
 if TYPE_CHECKING:

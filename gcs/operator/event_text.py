@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from gcs import ipc, request_words
 from gcs.enu_text import signed_enu
+from gcs.gate.condition import Condition
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.operator.client import StationEnded
 from gcs.operator.control_text import control_words
+from gcs.operator.conversation import TrackedRequest
 from gcs.operator.errors import error_lines
 
 LEVELS = ("", "DEBUG", "INFO", "WARN", "ERROR", "FATAL")
@@ -126,3 +128,32 @@ def operation_line(operation: ipc.Operation, now_ns: int) -> str:
     if operation.asked.vehicle:
         label += f" of vehicle {operation.asked.vehicle}"
     return f"{operation.id:>3}  {label}: {text}, {told} {lasted_s:.0f} s, asked by {who}"
+
+
+WARNING = 3
+"""The level of `ipc.LogEvent`."""
+STANDING_CAUTION = Condition.VEHICLE_FAILSAFE_WEAK.value
+
+
+class WarningFilter:
+    """Is given every event, in order.
+
+    A request of one's own that is refused or fails is in the log as well: the answer has said it
+    already.  And that the vehicle's own failsafes are weak is as true before each of a hundred
+    commands: `cautions` says whether it is shown.
+    """
+
+    def __init__(self, *, cautions: bool) -> None:
+        self._cautions = cautions
+        self._answered: set[str] = set()
+
+    def hides(self, event: ipc.Event, request: TrackedRequest | None) -> bool:
+        if isinstance(event, ipc.VerdictEvent | ipc.EndingEvent):
+            if request is not None and event.sentence:
+                self._answered.add(event.sentence)
+            return False
+        if not isinstance(event, ipc.LogEvent) or event.level != WARNING:
+            return False
+        if not self._cautions and STANDING_CAUTION in event.text:
+            return True
+        return any(event.text.endswith(sentence) for sentence in self._answered)

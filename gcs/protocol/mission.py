@@ -27,7 +27,14 @@ from gcs.protocol.effects import (
     TransferProgress,
     Wake,
 )
-from gcs.protocol.transfer import SPEC_TIMING, Input, Parties, PlanMessage, Timing, Transfer
+from gcs.protocol.transfers.transfer import (
+    SPEC_TIMING,
+    Input,
+    Parties,
+    PlanMessage,
+    Timing,
+    Transfer,
+)
 from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import (
     MissionAck,

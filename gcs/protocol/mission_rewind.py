@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import assert_never
 
 from gcs.protocol.effects import Address, Cancel, Heard, Send, TransferEffect, Wake
-from gcs.protocol.transfer import SPEC_TIMING, Input, Parties, Timing, Transfer
+from gcs.protocol.transfers.transfer import SPEC_TIMING, Input, Parties, Timing, Transfer
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionCurrent, MissionSetCurrent
 

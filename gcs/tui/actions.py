@@ -14,13 +14,14 @@ from gcs import ipc, request_words, resources
 from gcs.operator import event_text
 from gcs.operator.client import Listened
 from gcs.operator.line_parser import LineError, parse_line
-from gcs.tui import look, map_panel
+from gcs.tui import look
 from gcs.tui.command_line import CommandLine
 from gcs.tui.keyboard import DIRECTIONS, PendingGoal, VelocityKeys
 from gcs.tui.keymap import Keymap
 from gcs.tui.keys import ABORT_IN_A_LINE, ALWAYS
 from gcs.tui.leaving import LeavingApp
-from gcs.tui.log_panel import LogPanel
+from gcs.tui.panels import map_panel
+from gcs.tui.panels.log_panel import LogPanel
 from gcs.tui.scene import REFUSED, Answer
 
 

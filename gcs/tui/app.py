@@ -19,24 +19,22 @@ from gcs import ipc, resources
 from gcs.operator import event_text
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.station_loss import after_station_died
-from gcs.tui import (
-    decisions_panel,
-    frame_panels,
-    fsa_panel,
-    height_panel,
-    look,
-    map_panel,
-    preflight_page,
-    vehicle_panel,
-    wind,
-)
+from gcs.tui import look, preflight_page, wind
 from gcs.tui.actions import KeyActions
 from gcs.tui.ascii_signs import in_ascii, needed
 from gcs.tui.command_line import CommandLine
 from gcs.tui.completion import Known, modes_of
-from gcs.tui.graphs import Graphs
 from gcs.tui.keymap import DEFAULT, Keymap
-from gcs.tui.log_panel import LogPanel
+from gcs.tui.panels import (
+    decisions_panel,
+    frame_panels,
+    fsa_panel,
+    height_panel,
+    map_panel,
+    vehicle_panel,
+)
+from gcs.tui.panels.graphs import Graphs
+from gcs.tui.panels.log_panel import LogPanel
 from gcs.tui.scene import REFUSED, Answer
 
 REDRAW_S = 0.1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final, get_args
 
-from gcs.protocol.transfer import PlanMessage
+from gcs.protocol.transfers.transfer import PlanMessage
 from gcs.vehicle.health.limit_monitors import WATCH_MESSAGES
 from gcs.vehicle.message_to_telemetry import UPDATE_MESSAGES
 from gcs.vehicle.talk.liveness import STATE_MESSAGES

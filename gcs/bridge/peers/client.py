@@ -33,7 +33,7 @@ from gcs.bridge.translate.chosen_before_arming import (
 from gcs.bridge.translate.meaning import Meaning, Seen, Settled, Sticks, Words
 from gcs.bridge.translate.settling import Pace, StickStream
 from gcs.gate.effects import Level
-from gcs.protocol.transfer import Timing
+from gcs.protocol.transfers.transfer import Timing
 from gcs.wire.messages import Statustext
 
 SPAN_NS = 2_000_000_000

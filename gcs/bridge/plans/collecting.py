@@ -17,7 +17,7 @@ from gcs.bridge.conversation.pending_requests import From
 from gcs.plan.item_messages import item_of, item_of_degrees
 from gcs.plan.wire import WireItem
 from gcs.protocol.effects import Address
-from gcs.protocol.transfer import RoundTrip, Timing
+from gcs.protocol.transfers.transfer import RoundTrip, Timing
 from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import (
     MissionAck,

@@ -17,7 +17,7 @@ from typing import Final
 
 from gcs.bridge.plans.collecting import Question, question
 from gcs.protocol.effects import Address
-from gcs.protocol.transfer import SPEC_TIMING, Timing
+from gcs.protocol.transfers.transfer import SPEC_TIMING, Timing
 from gcs.wire.ids import MissionType
 
 WINDOW: Final = 16

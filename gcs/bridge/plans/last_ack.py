@@ -13,7 +13,7 @@ from gcs.bridge.conversation.pending_requests import From
 from gcs.bridge.plans.collecting import ItemMessage, question
 from gcs.bridge.plans.effects import PlanEffect
 from gcs.bridge.plans.replies import reply
-from gcs.protocol.transfer import SPEC_TIMING, Timing
+from gcs.protocol.transfers.transfer import SPEC_TIMING, Timing
 from gcs.wire.ids import MissionResult, MissionType
 from gcs.wire.messages import MissionAck
 

@@ -25,7 +25,7 @@ from gcs.bridge.plans.last_ack import LastAck
 from gcs.bridge.plans.replies import MISSION_PLANNER, NAMES, Replies, replies, reply
 from gcs.bridge.plans.submissions import Submission, Submissions
 from gcs.gate.refusal import Code
-from gcs.protocol.transfer import SPEC_TIMING, Timing
+from gcs.protocol.transfers.transfer import SPEC_TIMING, Timing
 from gcs.wire.ids import Component, MissionResult, MissionType
 from gcs.wire.messages import (
     Message,

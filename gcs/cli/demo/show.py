@@ -17,7 +17,7 @@ from gcs.cli.demo.script import Flown
 from gcs.enu_text import signed_enu
 from gcs.operator import event_text
 from gcs.operator.conversation import TrackedRequest
-from gcs.operator.warning_filter import WARNING, WarningFilter
+from gcs.operator.event_text import WARNING, WarningFilter
 
 STYLES = {
     "accepted": "cyan",

@@ -15,7 +15,7 @@ import click
 
 from gcs.cli.key import read_key_file
 from gcs.cli.options import UTF8
-from gcs.cli.record_files import LAST, RECORD, one_record, told
+from gcs.cli.records.files import LAST, RECORD, one_record, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 

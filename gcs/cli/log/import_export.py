@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, BinaryIO, TypeAlias
 
 import click
 
-from gcs.cli.record_files import FileOfKind, reading_progress
+from gcs.cli.records.files import FileOfKind, reading_progress
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 

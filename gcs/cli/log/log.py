@@ -14,7 +14,7 @@ from gcs.cli.log.import_export import cannot_write, export_log, import_log
 from gcs.cli.log.replay import replay
 from gcs.cli.log.report import report
 from gcs.cli.log.rewrite import compact, cut, merge, recover
-from gcs.cli.record_files import LAST, RECORD, newest, one_record, reading_progress, told
+from gcs.cli.records.files import LAST, RECORD, newest, one_record, reading_progress, told
 from gcs.exit_codes import ExitCode
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gcs.cli.options import SYSID, UTF8, FiniteRange
-from gcs.cli.record_files import LAST, RECORD, one_record
+from gcs.cli.records.files import LAST, RECORD, one_record
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from gcs.cli.options import SYSID
-from gcs.cli.record_files import LAST, RECORD, one_record, reading_progress, told
+from gcs.cli.records.files import LAST, RECORD, one_record, reading_progress, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 

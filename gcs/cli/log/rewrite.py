@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from gcs.cli.options import FiniteRange
-from gcs.cli.record_files import NEW_RECORD, RECORD, reading_progress, told, writing
+from gcs.cli.records.files import NEW_RECORD, RECORD, reading_progress, told, writing
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 

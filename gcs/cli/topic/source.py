@@ -13,7 +13,7 @@ import click
 
 from gcs.cli import completers
 from gcs.cli.options import UTF8, FiniteRange, Seconds
-from gcs.cli.record_files import newest, told
+from gcs.cli.records.files import newest, told
 from gcs.config import DEFAULT_LINK
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError

@@ -19,7 +19,7 @@ from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import StartMission
 from gcs.gate.states import State
 from gcs.protocol.effects import Address, Heard, Send
-from gcs.protocol.transfer import SPEC_TIMING, Timing
+from gcs.protocol.transfers.transfer import SPEC_TIMING, Timing
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
 from gcs.session.work import AskGate, GateInput, Log, Work

@@ -10,7 +10,7 @@ from gcs import ipc
 from gcs.bridge.setup_policy.operator_rules import why_not_read_file
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Heard, Send, Wake
-from gcs.protocol.ftp import (
+from gcs.protocol.transfers.ftp import (
     ANSWER_NS,
     FileCrc,
     FileCrcTold,
@@ -22,7 +22,7 @@ from gcs.protocol.ftp import (
     FolderRead,
     FtpEffect,
 )
-from gcs.protocol.vehicle_log import (
+from gcs.protocol.transfers.vehicle_log import (
     QUIET_NS,
     LogBytes,
     LogEffect,

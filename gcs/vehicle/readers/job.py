@@ -11,7 +11,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import LandedState
 from gcs.protocol.effects import Address, Heard, Wake
-from gcs.protocol.ftp import ANSWER_NS, FileRead
+from gcs.protocol.transfers.ftp import ANSWER_NS, FileRead
 from gcs.session.speedup_waits import Times
 from gcs.session.work import GiveVerdict, Log, TellOperator, Work
 from gcs.vehicle.talk.telemetry import Telemetry

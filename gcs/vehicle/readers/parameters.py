@@ -17,8 +17,9 @@ from gcs.bridge.setup_policy.safety_parameters import NAME
 from gcs.float32 import float32, value_text
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address, Heard, Send, Wake
-from gcs.protocol.ftp import FileData, FileEnd, FileFailed, FileRead
-from gcs.protocol.parameter_list import (
+from gcs.protocol.parameters import BY_NAME, Parameter, encode_value, why_not
+from gcs.protocol.transfers.ftp import FileData, FileEnd, FileFailed, FileRead
+from gcs.protocol.transfers.parameter_list import (
     ANSWER_NS,
     QUIET_NS,
     ListDone,
@@ -27,8 +28,7 @@ from gcs.protocol.parameter_list import (
     ParameterList,
     parameter_of,
 )
-from gcs.protocol.parameter_pack import PATH, PackError, unpack
-from gcs.protocol.parameters import BY_NAME, Parameter, encode_value, why_not
+from gcs.protocol.transfers.parameter_pack import PATH, PackError, unpack
 from gcs.report import ParamItem
 from gcs.session.effects import Record
 from gcs.session.work import Work

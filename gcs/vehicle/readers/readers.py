@@ -8,8 +8,8 @@ from __future__ import annotations
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.protocol.effects import Address, Heard, Wake
-from gcs.protocol.parameter_list import parameter_of
 from gcs.protocol.parameters import Parameter
+from gcs.protocol.transfers.parameter_list import parameter_of
 from gcs.session.speedup_waits import Times
 from gcs.session.work import AskReader, Work
 from gcs.vehicle.readers.files import FileJob, ListFolder, ListLogs, ReadLog, SumUpFile

@@ -30,7 +30,7 @@ from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.policy.policy import BridgeRules
 from gcs.protocol.autopilot import ARDUPILOT, PX4
 from gcs.protocol.effects import Address
-from gcs.protocol.transfer import SPEC_TIMING
+from gcs.protocol.transfers.transfer import SPEC_TIMING
 from gcs.wire.frame import Frame, split
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck, CommandLong, MissionAck, MissionRequestInt, Statustext

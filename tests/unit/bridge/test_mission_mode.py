@@ -16,7 +16,7 @@ from gcs.bridge.translate.chosen_before_arming import KEPT_NS
 from gcs.bridge.translate.says import ask
 from gcs.protocol.autopilot import PX4
 from gcs.protocol.effects import Address
-from gcs.protocol.transfer import SPEC_TIMING
+from gcs.protocol.transfers.transfer import SPEC_TIMING
 from gcs.wire.ids import Cmd
 from tests.unit.bridge.test_bridge import HEARTBEAT, VEHICLE, Table, of
 from tests.unit.bridge.vehicles import standing

@@ -20,7 +20,7 @@ from gcs.bridge.judge.received import Judged
 from gcs.gate.policy.parse import parse_policy
 from gcs.protocol.autopilot import PX4
 from gcs.protocol.effects import Address
-from gcs.protocol.transfer import SPEC_TIMING
+from gcs.protocol.transfers.transfer import SPEC_TIMING
 from gcs.wire.frame import Frame, split
 from gcs.wire.ids import Cmd, Result
 from gcs.wire.messages import CommandAck

@@ -7,7 +7,7 @@ from gcs.bridge.effects import BridgeEffect, LogLine, Reply
 from gcs.gate.policy.parse import parse_policy
 from gcs.protocol.effects import Address
 from gcs.protocol.enforced_sysid import Hears
-from gcs.protocol.transfer import SPEC_TIMING
+from gcs.protocol.transfers.transfer import SPEC_TIMING
 from tests.unit.bridge.test_bridge import HEARTBEAT, OWN, VEHICLE, S, frame_of, of, texts
 
 ALONE = Hears(7, 7, "SYSID_ENFORCE")

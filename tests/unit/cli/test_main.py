@@ -19,7 +19,10 @@ from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 from tests.unit.cli.command_line import gcs
 
-HEAVY = ("rich", "numpy", "msgspec", "pymavlink", "textual", "asyncio", "subprocess", "gcs.cli.fly")
+HEAVY = (
+    *("rich", "numpy", "msgspec", "pymavlink", "textual", "asyncio", "subprocess"),
+    "gcs.cli.fly.fly",
+)
 
 
 def run_python(code: str) -> subprocess.CompletedProcess[str]:
@@ -43,7 +46,7 @@ def test_help_imports_nothing_heavy() -> None:
 @pytest.mark.slow
 def test_mavutil_is_never_loaded_by_a_command_line() -> None:
     code = (
-        "import sys, gcs.cli.fly, gcs.cli.demo.demo, gcs.cli.oneshot_session, gcs.tui.app\n"
+        "import sys, gcs.cli.fly.fly, gcs.cli.demo.demo, gcs.cli.oneshot_session, gcs.tui.app\n"
         "sys.exit('pymavlink.mavutil' in sys.modules)"
     )
     assert run_python(code).returncode == 0

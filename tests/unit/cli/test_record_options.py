@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 import pytest
 
-from gcs.cli.record_options import Age, Size
+from gcs.cli.records.options import Age, Size
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,8 @@ from __future__ import annotations
 import click
 import pytest
 
-from gcs.cli import fly, oneshot
+from gcs.cli import oneshot
+from gcs.cli.fly import fly
 from gcs.cli.mission import live as mission_live
 from gcs.cli.options import station_config
 from gcs.cli.preflight import preflight

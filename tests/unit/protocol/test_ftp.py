@@ -7,9 +7,9 @@ import struct
 
 import pytest
 
-from gcs.protocol.byte_pieces import Pieces
 from gcs.protocol.effects import Address, Heard, Send, Wake
-from gcs.protocol.ftp import (
+from gcs.protocol.transfers.byte_pieces import Pieces
+from gcs.protocol.transfers.ftp import (
     ANSWER_NS,
     FileData,
     FileEnd,

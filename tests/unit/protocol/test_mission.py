@@ -23,7 +23,7 @@ from gcs.protocol.effects import (
     Wake,
 )
 from gcs.protocol.mission import MissionClear, MissionDownload, MissionUpload
-from gcs.protocol.transfer import Input
+from gcs.protocol.transfers.transfer import Input
 from gcs.wire.ids import Cmd, MavFrame, MissionResult, MissionType
 from gcs.wire.messages import (
     Message,

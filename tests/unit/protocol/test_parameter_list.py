@@ -10,9 +10,9 @@ import pytest
 from gcs.float32 import float32, value_text
 from gcs.protocol.autopilot import ParamEncoding
 from gcs.protocol.effects import Address, Heard, Send, Wake
-from gcs.protocol.parameter_list import ListDone, ListEffect, ListFailed, ParameterList
-from gcs.protocol.parameter_pack import PackError, unpack
 from gcs.protocol.parameters import Parameter, why_not
+from gcs.protocol.transfers.parameter_list import ListDone, ListEffect, ListFailed, ParameterList
+from gcs.protocol.transfers.parameter_pack import PackError, unpack
 from gcs.wire.ids import ParamType
 from gcs.wire.messages import ParamRequestList, ParamRequestRead, ParamValue
 

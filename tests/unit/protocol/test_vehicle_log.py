@@ -7,7 +7,7 @@ import random
 import pytest
 
 from gcs.protocol.effects import Address, Heard, Send, Wake
-from gcs.protocol.vehicle_log import (
+from gcs.protocol.transfers.vehicle_log import (
     LogBytes,
     LogEffect,
     LogEnd,

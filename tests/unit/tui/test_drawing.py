@@ -11,20 +11,13 @@ from hypothesis import strategies as st
 
 from gcs import ipc
 from gcs.gate.states import State
-from gcs.tui import (
-    decisions_panel,
-    flight_numbers,
-    fsa_panel,
-    height_panel,
-    look,
-    map_panel,
-    vehicle_panel,
-)
+from gcs.tui import flight_numbers, look
 from gcs.tui.braille import Canvas, clip
-from gcs.tui.frame_panels import footer, header
-from gcs.tui.graphs import Graphs
 from gcs.tui.keyboard import PendingGoal
 from gcs.tui.keymap import DEFAULT
+from gcs.tui.panels import decisions_panel, fsa_panel, height_panel, map_panel, vehicle_panel
+from gcs.tui.panels.frame_panels import footer, header
+from gcs.tui.panels.graphs import Graphs
 from gcs.tui.scene import Scene
 from gcs.tui.view import HALF_SPANS_M, fit, nice_length, outline
 from gcs.tui.wind import wind_of

@@ -6,9 +6,10 @@ import pytest
 from textual.pilot import Pilot
 
 from gcs import ipc
-from gcs.tui import look, map_panel
+from gcs.tui import look
 from gcs.tui.app import FlyApp
 from gcs.tui.keyboard import PendingGoal
+from gcs.tui.panels import map_panel
 from gcs.tui.scene import Scene
 from gcs.tui.verdict_ahead import LEAST_S, RENEW_S, Ahead, VerdictAhead
 from tests.unit.operator.fake_station import FakeStation

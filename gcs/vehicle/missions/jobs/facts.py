@@ -20,7 +20,7 @@ from gcs.plan.wire_fence import is_above_home
 from gcs.protocol.effects import Address, Heard, Send, TransferDone, TransferFailed, Wake
 from gcs.protocol.mission import MissionDownload
 from gcs.protocol.settings import USUAL_WAITS, Quantity, SettingsReader, Waits
-from gcs.protocol.transfer import Timing
+from gcs.protocol.transfers.transfer import Timing
 from gcs.session.speedup_waits import Times
 from gcs.vehicle.missions.paths import autopilot_name
 from gcs.vehicle.talk.telemetry import Telemetry

@@ -37,7 +37,7 @@ from gcs.protocol.effects import (
 )
 from gcs.protocol.mission import MissionClear, MissionDownload, MissionUpload
 from gcs.protocol.mission_rewind import MissionRewind
-from gcs.protocol.transfer import Timing
+from gcs.protocol.transfers.transfer import Timing
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
 from gcs.session.work import GiveVerdict, Log, TellOperator, Work

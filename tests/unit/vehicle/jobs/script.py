@@ -21,7 +21,7 @@ from gcs.plan.item_messages import item_of, message_of
 from gcs.plan.wire import WireItem
 from gcs.protocol.autopilot import PX4, Autopilot
 from gcs.protocol.effects import Address, Heard, Send
-from gcs.protocol.transfer import SPEC_TIMING
+from gcs.protocol.transfers.transfer import SPEC_TIMING
 from gcs.session.effects import ReadFile, WriteFile
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times

@@ -55,14 +55,14 @@ def attach(
         raise click.UsageError("--vehicle goes with --plain: the screen shows the first vehicle")
     found = the_station(links)
     if not plain:
-        from gcs.cli.fly import needs_a_terminal
+        from gcs.cli.fly.fly import needs_a_terminal
 
         needs_a_terminal()
     station = joined_station(found, "gcs attach")
     if take:
         station.send(Ask(0, "station_take"))
     if plain:
-        from gcs.cli.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
+        from gcs.cli.fly.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
         from gcs.operator.chosen_vehicle import ChosenVehicle
         from gcs.operator.interrupts import Interrupts
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from gcs.protocol.byte_pieces import Pieces
 from gcs.protocol.effects import Address, Heard, Send, Wake
+from gcs.protocol.transfers.byte_pieces import Pieces
 from gcs.wire.messages import LogData, LogEntry, LogRequestData, LogRequestEnd, LogRequestList
 
 PIECE_BYTES: Final = 90

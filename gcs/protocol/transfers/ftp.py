@@ -13,8 +13,8 @@ import struct
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from gcs.protocol.byte_pieces import Pieces
 from gcs.protocol.effects import Address, Heard, Send, Wake
+from gcs.protocol.transfers.byte_pieces import Pieces
 from gcs.wire.ids import FtpError, FtpOpcode
 from gcs.wire.messages import FileTransferProtocol
 

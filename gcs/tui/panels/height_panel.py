@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.text import Text
 
 from gcs.tui import look
-from gcs.tui.map_panel import ACTIVE, PENDING
+from gcs.tui.panels.map_panel import ACTIVE, PENDING
 from gcs.tui.scene import Scene
 
 TOPS_M = (3.0, 6.0, 12.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1200.0)

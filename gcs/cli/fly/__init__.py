@@ -1,0 +1,1 @@
+"""`gcs fly` and `gcs attach`: the screen, or lines."""

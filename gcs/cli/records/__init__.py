@@ -1,0 +1,1 @@
+"""What commands about records share: which files, which options."""

@@ -1,0 +1,1 @@
+"""What comes and goes in pieces: plans, files, logs, lists of parameters."""
