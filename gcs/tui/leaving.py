@@ -73,7 +73,7 @@ class LeavingApp(App[None]):
     def action_leave(self) -> None:
         """Leave; with the vehicle in the air the first time only ask."""
         question = self.query_one("#question")
-        if self.scene.flies_for_us and not question.display and not self._leaving:
+        if self.scene.held_if_left and not question.display and not self._leaving:
             question.display = True
         else:
             self._leave("quit")

@@ -105,12 +105,14 @@ class Scene:
         return None if seen is None or held else seen.active_goal_enu
 
     @property
-    def flies_for_us(self) -> bool:
-        """In the air, and this operator is who commands it: leaving has it held."""
+    def held_if_left(self) -> bool:
+        """In the air, and leaving has it held: this operator commands it, or has started the
+        station, which ends with it."""
         seen = self.snapshot
         if seen is None or self.lost or not seen.armed or seen.landed == LandedState.ON_GROUND.name:
             return False
-        return seen.in_control is not None and seen.in_control.client == self.talk.number
+        commands = seen.in_control is not None and seen.in_control.client == self.talk.number
+        return commands or self.talk.number == 1  # `Hello.client`: who has started the station
 
     def ask(self, request: ipc.Ask, label: str = "") -> ipc.Ask:
         """What is to be sent: the request with its number, kept for its answers."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
 import pytest
 from textual.pilot import Pilot
 
@@ -156,14 +157,19 @@ def test_whoever_flies_is_asked_before_leaving(keys: str, leaves: int, aborts: i
     flown(script)
 
 
-def test_whoever_only_looks_on_leaves_without_a_question() -> None:
-    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+@pytest.mark.parametrize(("client", "asks"), [(1, True), (7, False)])
+def test_a_looker_on_is_asked_where_the_station_ends_with_its_screen(
+    client: int, asks: bool
+) -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         station.station.armed, station.station.pos = True, (0.0, 0.0, 2.0)
         station.station.in_control = ipc.OperatorInfo(2, "gcs fly")
         station.fly(0.1)
         await pilot.pause()
+        assert app.scene.talk.hello is not None
+        app.scene.talk.hello = msgspec.structs.replace(app.scene.talk.hello, client=client)
         await pilot.press("q")
-        assert isinstance(station.sent[-1], ipc.Leave)
+        assert any(isinstance(each, ipc.Leave) for each in station.sent) is not asks
 
     flown(script)
 

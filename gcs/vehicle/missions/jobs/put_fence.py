@@ -2,7 +2,8 @@
 
 The vehicle then keeps it when the link is down.  Zones are uploaded and read back first, in place
 of the fence that was on board; then each parameter is read, set where it differs, and read back;
-what switches the fence on comes last.  Only on the ground: meanwhile there is less of a fence.
+what switches the fence on comes last.  Only on the ground and disarmed: meanwhile there is less of
+a fence.  What was on board before is named as gone, as a fence of a plan may be.
 """
 
 from __future__ import annotations
@@ -38,11 +39,14 @@ class PutFence(BringMission):
         super().__init__(asked, SOURCE)
         self._fence: VehicleFence | None = None
         self._setup: ParameterSetup | None = None
+        self._before = 0
+        """Items of the fence that was on board."""
 
     def start(self, view: VehicleView, now_ns: int) -> list[JobWork]:
-        if view.in_air:
-            text = "the vehicle's own fence is not changed in the air: land first"
-            return self.refuse(Refusal(Code.IN_AIR, text))
+        if view.in_air or view.telemetry.armed:
+            text = "the vehicle's own fence is not changed in the air, or while it is armed"
+            return self.refuse(Refusal(Code.IN_AIR, f"{text}: land and disarm first"))
+        self._before = len(view.fence or ())
         return self.prepare_with(self._prepare(view), True, view, now_ns)
 
     def _prepare(self, view: VehicleView) -> Steps[Prepared | Refusal]:
@@ -130,7 +134,10 @@ class PutFence(BringMission):
         values = ", ".join(f"{each.name} = {each.after:g}" for each in setup.changes)
         text = f"on board, read back: {', '.join((size, *zones))}; a breach leads to {kept.breach}"
         lost = "".join(f"; not kept: {each}" for each in self._fence.not_kept)
-        return f"{text} ({values}){lost}"
+        gone = (
+            f"; the fence that was on board, {self._before} items, is gone" if self._before else ""
+        )
+        return f"{text} ({values}){gone}{lost}"
 
     # ------------------------------------------------------------------------- of no file
 

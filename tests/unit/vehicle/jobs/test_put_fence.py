@@ -103,6 +103,7 @@ def test_a_policy_without_zones_takes_off_those_of_another_plan() -> None:
     assert [each.mission_type for each in script.sent(MissionClearAll)] == [1]
     assert script.outcome == COMPLETE
     assert there.lists[1] == []
+    assert "; the fence that was on board, " in script.sentence
 
 
 def test_zones_come_before_what_they_are_switched_on_by() -> None:
@@ -114,6 +115,14 @@ def test_zones_come_before_what_they_are_switched_on_by() -> None:
 @pytest.mark.parametrize("state", [State.HOVERING, State.FLYING_MISSION, State.EXTERNAL])
 def test_in_the_air_it_is_refused_and_nothing_is_sent(state: State) -> None:
     script = put(board(PX4), state=state)
+    assert script.refused is Code.IN_AIR
+    assert script.board.heard == []
+
+
+def test_armed_on_the_ground_it_is_refused_as_every_guarded_parameter_is() -> None:
+    telemetry = placed(PX4)
+    telemetry.armed = True
+    script = JobScript(PutFence(asked("fence_put")), board(PX4), telemetry, State.GROUNDED)
     assert script.refused is Code.IN_AIR
     assert script.board.heard == []
 
