@@ -90,7 +90,7 @@ def check(files: tuple[Path, ...]) -> None:
     paths = files or tuple(place.path for place in settings.places())
     if not paths:
         hint = "gcs config init writes one"
-        raise ExitError(ExitCode.NO_VEHICLE, f"there is no {settings.NAME} here or above", hint)
+        raise ExitError(ExitCode.BAD_FILE, f"there is no {settings.NAME} here or above", hint)
     for path in paths:
         read = settings.read(path)
         try:

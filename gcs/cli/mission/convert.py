@@ -74,6 +74,7 @@ def convert(
     from gcs.cli.mission.report import finding_json, finding_lines
     from gcs.plan.errors import PlanError
     from gcs.plan.formats import convert as conversion
+    from gcs.plan.formats.reader import read
     from gcs.plan.formats.writer import format_of
 
     if output == "-" and (kind is None or as_json):
@@ -85,6 +86,7 @@ def convert(
     try:
         kind = kind or format_of(output)
         written = conversion.convert(output, plan, kind, autopilot, home)
+        there = read(f"{output}.{kind}", written.data, autopilot)
     except PlanError as error:
         raise ExitError(ExitCode.BAD_FILE, str(error), error.hint) from None
     kept = not (strict and written.lost)
@@ -95,9 +97,9 @@ def convert(
             "file": plan.source,
             "written": output if kept else None,
             "format": kind,
-            "items": len(plan.items),
-            "zones": len(plan.fence.zones),
-            "rally": len(plan.rally),
+            "items": len(there.items),
+            "zones": len(there.fence.zones),
+            "rally": len(there.rally),
             "notes": [finding_json(finding) for finding in plan.notes],
             "lost": [finding_json(finding) for finding in written.lost],
         }
@@ -111,6 +113,6 @@ def convert(
     if not kept:
         raise ExitError(ExitCode.DIFFERENT, f"{output}: not written, as it would lose the above")
     if output != "-":
-        counts = f"{len(plan.items)} items, {len(plan.fence.zones)} zones"
-        click.echo(f"{output}: written, {counts}, {len(plan.rally)} rally points")
+        counts = f"{len(there.items)} items, {len(there.fence.zones)} zones"
+        click.echo(f"{output}: written, {counts}, {len(there.rally)} rally points")
     return ExitCode.DONE
