@@ -174,7 +174,7 @@ def test_an_ardupilot_that_is_armed_again_in_the_same_guided_mode_is_found(
 
 
 def test_a_goal_that_is_sent_bare_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    def bare(_step: StepContext, goal_ned: Vec3, _beside_ned: Vec3 | None = None) -> Vec3:
+    def bare(_step: StepContext, goal_ned: Vec3, *_beside: object, **_most: object) -> Vec3:
         return goal_ned
 
     monkeypatch.setattr(gate, "towards", bare)
