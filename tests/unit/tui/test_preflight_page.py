@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import pytest
 from textual.pilot import Pilot
 
 from gcs import ipc
 from gcs.tui.app import FlyApp
 from tests.unit.tui.flown import drawn, flown, screen_text
 from tests.unit.tui.listening_station import ListeningStation
+
+pytestmark = pytest.mark.slow  # the screen's own timers
 
 
 def test_the_key_shows_what_fails_with_what_mends_it_and_any_key_closes_it() -> None:

@@ -16,6 +16,8 @@ from tests.unit.operator.fake_station import FakeStation
 from tests.unit.tui.flown import drawn, flown, screen_text
 from tests.unit.tui.listening_station import ListeningStation
 
+pytestmark = pytest.mark.slow  # the screen's own timers
+
 KNOWN = Known(("demo.toml", "lab3/square.toml"), modes_of("1/1 px4 quadrotor"))
 
 

@@ -16,6 +16,8 @@ from tests.unit.operator.fake_station import FakeStation
 from tests.unit.tui.flown import drawn, flown, screen_text
 from tests.unit.tui.listening_station import ListeningStation
 
+pytestmark = pytest.mark.slow  # the screen's own timers
+
 HERE: tuple[ipc.Vec3, None] = (0.0, 0.0, 2.0), None
 THERE: tuple[ipc.Vec3, None] = (500.0, 0.0, 2.0), None
 CLEARS = ipc.Checked(1, "goto", "accepted")
