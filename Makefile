@@ -28,7 +28,7 @@ help: ## say what there is
 demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated vehicle
 	@$(BIN)/gcs demo
 
-quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about 50 s)
+quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about a minute)
 	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 --dist worksteal $(FEWER)'
 
 test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (about 10 minutes on 2 cores)
