@@ -9,10 +9,10 @@ for are from memory of PX4's `mavlink_mission.cpp` and ArduPilot's `AP_Mission.c
 from __future__ import annotations
 
 import math
-import struct
 from enum import Enum
 from typing import TypeAlias, assert_never
 
+from gcs.float32 import float32
 from gcs.plan.model import AutopilotName
 from gcs.wire.ids import Cmd
 
@@ -40,7 +40,7 @@ class Kept(Enum):
             case Kept.HEADING if math.isfinite(sent) and math.isfinite(back):
                 return abs(math.remainder(sent - back, 360.0)) <= YAW_TOLERANCE_DEG
             case Kept.WHOLE | Kept.HEADING:
-                return (math.isnan(sent) and math.isnan(back)) or _float32(sent) == _float32(back)
+                return (math.isnan(sent) and math.isnan(back)) or float32(sent) == float32(back)
             case _:
                 assert_never(self)
 
@@ -95,8 +95,3 @@ _KEPT: dict[AutopilotName, dict[int, Params]] = {"px4": _PX4, "ardupilot": _ARDU
 def kept(command: int, autopilot: AutopilotName) -> Params:
     """What the autopilot keeps of parameters 1 to 4; of commands that have no row, all."""
     return _KEPT[autopilot].get(command, _ALL)
-
-
-def _float32(value: float) -> float:
-    number: float = struct.unpack("<f", struct.pack("<f", value))[0]
-    return number

@@ -20,8 +20,6 @@ POINTS: Final = 600
 LINES: Final = 200
 PATH_POINTS: Final = 1_000
 """Of a longer path every second, third ... point is told."""
-
-
 _NOT_IN_AIR: Final = ("", LandedState.UNDEFINED.name, LandedState.ON_GROUND.name)
 
 

@@ -24,6 +24,7 @@ from gcs.station.operators import Operators
 from gcs.station.separation import Separation
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.gate_port import NOT_FLYING
+from gcs.vehicle.vehicle import Vehicle
 
 
 def line(
@@ -63,18 +64,15 @@ def _asked(
     now_ns: int,
 ) -> list[Work]:
     """What is asked of one vehicle."""
-    refusal = vehicles.refusal(owner, now_ns)
     telemetry = None if owner == STATION else vehicles.of_owner(owner).telemetry
     autopilot = None if telemetry is None else telemetry.autopilot
     held = None
     if bridge is not None and telemetry is not None:
         vehicle = Address(telemetry.sysid, telemetry.compid)
         held = bridge.held_back(command, telemetry.autopilot, vehicle)
-        not_now = bridge.armings.why_not(command, telemetry.sysid)
-        refusal = refusal or not_now
-    if isinstance(command, ipc.Ask) and refusal is None and owner != STATION:
-        asked = settled(command, vehicles.of_owner(owner))
-        command, refusal = (command, asked) if isinstance(asked, Refusal) else (asked, None)
+    refusal = _why_not(vehicles, bridge, command, owner, now_ns)
+    if isinstance(command, ipc.Ask) and refusal is None:
+        command, refusal = _settled(command, vehicles.of_owner(owner))
     if isinstance(command, ipc.Stream) and owner != STATION:
         streamed = vehicles.of_owner(owner).orbits.streams_itself(operator)
         return [*streamed, *operators.line(operator, command, autopilot, refusal, now_ns)]
@@ -82,6 +80,26 @@ def _asked(
         return operators.line(operator, command, autopilot, refusal, now_ns)
     told = operators.line(operator, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)
     return [held, *told]
+
+
+def _why_not(
+    vehicles: Vehicles,
+    bridge: Bridge | None,
+    command: ipc.Ask | ipc.Stream,
+    owner: int,
+    now_ns: int,
+) -> Refusal | None:
+    """Why nothing, or not this, can be asked of that vehicle, whatever its gate would say."""
+    refusal, vehicle = vehicles.refusal(owner, now_ns), vehicles.of_owner(owner)
+    if refusal is None and bridge is not None and vehicle.telemetry is not None:
+        refusal = bridge.armings.why_not(command, vehicle.sysid)
+    return refusal
+
+
+def _settled(ask: ipc.Ask, vehicle: Vehicle) -> tuple[ipc.Ask, Refusal | None]:
+    """With its goal in the vehicle's local frame, or why it has none."""
+    asked = settled(ask, vehicle)
+    return (ask, asked) if isinstance(asked, Refusal) else (asked, None)
 
 
 def _checked(
@@ -96,13 +114,11 @@ def _checked(
     """The verdict that a request would get now; nothing is opened, recorded or sent for it."""
     owner = vehicles.owner_for(operators.vehicle_of(ask))
     vehicle = vehicles.of_owner(owner)
-    refusal = operators.control.refusal(operator, ask) or vehicles.refusal(owner, now_ns)
-    if bridge is not None and refusal is None and owner != STATION:
-        refusal = bridge.armings.why_not(ask, vehicle.sysid)
-    if refusal is None and owner != STATION:
-        asked = settled(ask, vehicle)
-        ask, refusal = (ask, asked) if isinstance(asked, Refusal) else (asked, None)
-    if refusal is not None or owner == STATION:
+    refusal = operators.control.refusal(operator, ask)
+    refusal = refusal or _why_not(vehicles, bridge, ask, owner, now_ns)
+    if refusal is None:
+        ask, refusal = _settled(ask, vehicle)
+    if refusal is not None:
         return announcements.checked(ask, refusal)
     if doer_of(ask.word) is not Doer.GATE:
         return ipc.Checked(ask.id, ask.word, "refused", "BAD_REQUEST", "only requests of the gate")

@@ -6,7 +6,7 @@ not text.
 
 # No `from __future__ import annotations`: see above.
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
 import msgspec
@@ -105,52 +105,33 @@ def _add_checks(server: MCPServer[Any], agent: Agent) -> None:
     one_at_a_time = threading.Lock()
     actions = ", ".join(ACTS)
 
-    @server.tool(
+    def judged(judge: Callable[[str, Mapping[str, object]], Answer]) -> Callable[..., object]:
+        def call(
+            action: str,
+            east_m: float | None = None,
+            north_m: float | None = None,
+            up_m: float | None = None,
+            yaw_deg: float | None = None,
+            plan: str | None = None,
+        ) -> CallToolResult:
+            given = {"east_m": east_m, "north_m": north_m, "up_m": up_m}
+            with one_at_a_time:
+                return _told(lambda: judge(action, {**given, "yaw_deg": yaw_deg, "plan": plan}))
+
+        return call
+
+    server.tool(
+        "check",
         description=f"Would this be accepted now? If so: a verdict to do it with. action: {actions}"
         ". goto needs east_m, north_m, up_m (and may have yaw_deg, clockwise from north); takeoff "
         "up_m above the take-off point; mission_upload plan, a mission file's name.",
         annotations=READS,
-    )
-    def check(
-        action: str,
-        east_m: float | None = None,
-        north_m: float | None = None,
-        up_m: float | None = None,
-        yaw_deg: float | None = None,
-        plan: str | None = None,
-    ) -> CallToolResult:
-        given = _given(east_m, north_m, up_m, yaw_deg, plan)
-        with one_at_a_time:
-            return _told(lambda: agent.check(action, given))
-
-    @server.tool(description="Why would this be refused now? Arguments as of check.")
-    def why_not(
-        action: str,
-        east_m: float | None = None,
-        north_m: float | None = None,
-        up_m: float | None = None,
-        yaw_deg: float | None = None,
-        plan: str | None = None,
-    ) -> CallToolResult:
-        given = _given(east_m, north_m, up_m, yaw_deg, plan)
-        with one_at_a_time:
-            return _told(lambda: agent.why_not(action, given))
-
-
-def _given(
-    east_m: float | None,
-    north_m: float | None,
-    up_m: float | None,
-    yaw_deg: float | None,
-    plan: str | None,
-) -> dict[str, object]:
-    return {
-        "east_m": east_m,
-        "north_m": north_m,
-        "up_m": up_m,
-        "yaw_deg": yaw_deg,
-        "plan": plan,
-    }
+    )(judged(agent.check))
+    server.tool(
+        "why_not",
+        description="Why would this be refused now? Arguments as of check.",
+        annotations=READS,
+    )(judged(agent.why_not))
 
 
 def _read(agent: Agent, name: str, look: Callable[[], Answer]) -> Callable[[], str]:

@@ -10,6 +10,7 @@ size that is too large for what it makes up while it is read (`@PARAM/param.pck`
 from __future__ import annotations
 
 import struct
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -319,70 +320,10 @@ class FileRead:
         return [*self.stop(), FileFailed(error, error_words(error))]
 
 
-class FolderRead:
-    """Lists a folder: the entries from offset on, until EOF."""
+class _Question(ABC):
+    """Asks about a path, once or again and again, and needs no session of the vehicle's."""
 
-    def __init__(
-        self, own: Address, target: Address, path: str, answer_ns: int = ANSWER_NS
-    ) -> None:
-        self._client = _Client(own, target, answer_ns)
-        self._path = path.encode()
-        self._entries: list[FileEntry] = []
-        self._passed = 0
-        self._tries = 0
-        self.deadline_ns: int | None = None
-        self.done = False
-
-    def start(self, now_ns: int) -> list[FtpEffect]:
-        self._client.begin(now_ns)
-        return self._ask(now_ns)
-
-    def stop(self) -> list[FtpEffect]:
-        """It is not wanted any more."""
-        self.done, self.deadline_ns = True, None
-        return []
-
-    def handle(self, event: Heard | Wake, now_ns: int) -> list[FtpEffect]:
-        if self.done:
-            return []
-        if isinstance(event, Wake):
-            if self.deadline_ns is None or now_ns < self.deadline_ns:
-                return []
-            self._tries += 1
-            if self._tries >= OPEN_WAITS:
-                return [*self.stop(), FileFailed(None, "the vehicle does not answer")]
-            return self._ask(now_ns)
-        reply = self._client.reply(event)
-        if reply is None or reply.asked != FtpOpcode.LISTDIRECTORY:
-            return []
-        if reply.opcode == FtpOpcode.NAK:
-            if reply.error == FtpError.EOF:
-                return [*self.stop(), FolderListed(tuple(self._entries))]
-            return [*self.stop(), FileFailed(reply.error, error_words(reply.error))]
-        if reply.offset != self._passed:
-            return []  # the answer to one that was asked twice
-        self._tries = 0
-        for line in filter(None, reply.data.split(b"\0")):
-            self._passed += 1
-            self._note(line.decode("utf-8", "replace"))
-        return self._ask(now_ns)
-
-    def _ask(self, now_ns: int) -> list[FtpEffect]:
-        self.deadline_ns = now_ns + self._client.answer_ns
-        ask = FtpOpcode.LISTDIRECTORY
-        return [self._client.send(ask, offset=self._passed, data=self._path)]
-
-    def _note(self, line: str) -> None:
-        """`Fname<tab>size`, `Dname`, or `S` for what is left out."""
-        name, _, size = line[1:].partition("\t")
-        if line[:1] == "D" and name not in (".", ".."):
-            self._entries.append(FileEntry(name, None))
-        elif line[:1] == "F":
-            self._entries.append(FileEntry(name, int(size) if size.isdecimal() else 0))
-
-
-class FileCrc:
-    """Asks for the check sum of a file, which the vehicle reads whole for it."""
+    opcode: FtpOpcode
 
     def __init__(
         self, own: Address, target: Address, path: str, answer_ns: int = ANSWER_NS
@@ -407,21 +348,91 @@ class FileCrc:
         if self.done:
             return []
         if isinstance(event, Wake):
-            if self.deadline_ns is None or now_ns < self.deadline_ns:
-                return []
-            if now_ns - self._began_ns >= CRC_WAITS * self._client.answer_ns:
-                return [*self.stop(), FileFailed(None, "the vehicle tells no check sum")]
-            return self._ask(now_ns, again=True)
+            due = self.deadline_ns is not None and now_ns >= self.deadline_ns
+            return self._silent(now_ns) if due else []
         reply = self._client.reply(event)
-        if reply is None or reply.asked != FtpOpcode.CALCFILECRC:
+        if reply is None or reply.asked != self.opcode:
             return []
         if reply.opcode == FtpOpcode.NAK:
-            return [*self.stop(), FileFailed(reply.error, error_words(reply.error))]
-        return [*self.stop(), FileCrcTold(int.from_bytes(reply.data[:4], "little"))]
+            return self._denied(reply)
+        return self._told(reply, now_ns)
+
+    def _denied(self, reply: _Reply) -> list[FtpEffect]:
+        return [*self.stop(), FileFailed(reply.error, error_words(reply.error))]
+
+    @abstractmethod
+    def _ask(self, now_ns: int) -> list[FtpEffect]: ...
+
+    @abstractmethod
+    def _silent(self, now_ns: int) -> list[FtpEffect]:
+        """No answer came in time."""
+
+    @abstractmethod
+    def _told(self, reply: _Reply, now_ns: int) -> list[FtpEffect]: ...
+
+
+class FolderRead(_Question):
+    """Lists a folder: the entries from offset on, until EOF."""
+
+    opcode = FtpOpcode.LISTDIRECTORY
+
+    def __init__(
+        self, own: Address, target: Address, path: str, answer_ns: int = ANSWER_NS
+    ) -> None:
+        super().__init__(own, target, path, answer_ns)
+        self._entries: list[FileEntry] = []
+        self._passed = 0
+        self._tries = 0
+
+    def _ask(self, now_ns: int) -> list[FtpEffect]:
+        self.deadline_ns = now_ns + self._client.answer_ns
+        return [self._client.send(self.opcode, offset=self._passed, data=self._path)]
+
+    def _silent(self, now_ns: int) -> list[FtpEffect]:
+        self._tries += 1
+        if self._tries >= OPEN_WAITS:
+            return [*self.stop(), FileFailed(None, "the vehicle does not answer")]
+        return self._ask(now_ns)
+
+    def _denied(self, reply: _Reply) -> list[FtpEffect]:
+        if reply.error == FtpError.EOF:
+            return [*self.stop(), FolderListed(tuple(self._entries))]
+        return super()._denied(reply)
+
+    def _told(self, reply: _Reply, now_ns: int) -> list[FtpEffect]:
+        if reply.offset != self._passed:
+            return []  # the answer to one that was asked twice
+        self._tries = 0
+        for line in filter(None, reply.data.split(b"\0")):
+            self._passed += 1
+            self._note(line.decode("utf-8", "replace"))
+        return self._ask(now_ns)
+
+    def _note(self, line: str) -> None:
+        """`Fname<tab>size`, `Dname`, or `S` for what is left out."""
+        name, _, size = line[1:].partition("\t")
+        if line[:1] == "D" and name not in (".", ".."):
+            self._entries.append(FileEntry(name, None))
+        elif line[:1] == "F":
+            self._entries.append(FileEntry(name, int(size) if size.isdecimal() else 0))
+
+
+class FileCrc(_Question):
+    """Asks for the check sum of a file, which the vehicle reads whole for it."""
+
+    opcode = FtpOpcode.CALCFILECRC
 
     def _ask(self, now_ns: int, *, again: bool = False) -> list[FtpEffect]:
         self.deadline_ns = now_ns + CRC_AGAIN_WAITS * self._client.answer_ns
-        return [self._client.send(FtpOpcode.CALCFILECRC, data=self._path, again=again)]
+        return [self._client.send(self.opcode, data=self._path, again=again)]
+
+    def _silent(self, now_ns: int) -> list[FtpEffect]:
+        if now_ns - self._began_ns >= CRC_WAITS * self._client.answer_ns:
+            return [*self.stop(), FileFailed(None, "the vehicle tells no check sum")]
+        return self._ask(now_ns, again=True)
+
+    def _told(self, reply: _Reply, now_ns: int) -> list[FtpEffect]:
+        return [*self.stop(), FileCrcTold(int.from_bytes(reply.data[:4], "little"))]
 
 
 def error_words(error: int) -> str:
