@@ -549,11 +549,29 @@ class History(msgspec.Struct, frozen=True, tag="history", tag_field="type"):
     in_air_since_ns: int | None = None  # on the clock of the snapshots; null: on the ground
 
 
+class MissionItem(msgspec.Struct, frozen=True, array_like=True):
+    """One item of a mission on board; an array in JSON."""
+
+    seq: int  # as MAVLink counts, and `Snapshot.mission_seq`
+    command: str  # MAV_CMD: "NAV_WAYPOINT"
+    alt_m: float | None = None  # metres above `datum`; null: it has no place
+    datum: str = ""  # home | sea | ground
+
+
 class MissionPath(msgspec.Struct, frozen=True, tag="mission_path", tag_field="type"):
-    """The path of the mission on board as it was verified; empty where there is none.  Told when it
-    changes, of the vehicle that snapshots show."""
+    """The mission on board as it was verified: its path and its items; empty where there is none.
+    Told when it changes, of the vehicle that snapshots show."""
 
     points_enu: list[Vec3]  # metres; the legs join them in order
+    items: list[MissionItem] = []
+    unverified: str = ""  # why what is on board may not be flown as it is; empty: nothing is wrong
+
+
+class VehicleFence(msgspec.Struct, frozen=True, tag="vehicle_fence", tag_field="type"):
+    """The fence that was uploaded to the vehicle, which it keeps by itself, whoever has put it on
+    board; the policy's is `Fences`.  Told when it changes, of the vehicle that snapshots show."""
+
+    zones: list[FenceShape]
 
 
 class OperatorGoal(msgspec.Struct, frozen=True, tag="operator_goal", tag_field="type"):
@@ -682,6 +700,7 @@ Event: TypeAlias = (
     | Snapshot
     | History
     | MissionPath
+    | VehicleFence
     | OperatorGoal
     | BridgeStatus
     | BridgeDecision

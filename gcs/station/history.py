@@ -1,5 +1,5 @@
 """What has been told so far, for an operator who joins: the trail, the latest lines of the log, and
-the path of the mission on board.  All of it bounded."""
+what is on board.  All of it bounded."""
 
 from __future__ import annotations
 
@@ -8,18 +8,16 @@ from collections import deque
 from typing import Final
 
 from gcs import ipc
-from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.effects import Level
 from gcs.gate.states import LandedState
 from gcs.report import LogEvent
 from gcs.session.work import Log
+from gcs.station.on_board import OnBoard
 
 POINT_NS: Final = 1_000_000_000
 POINTS: Final = 600
 """Ten minutes, one a second."""
 LINES: Final = 200
-PATH_POINTS: Final = 1_000
-"""Of a longer path every second, third ... point is told."""
 _NOT_IN_AIR: Final = ("", LandedState.UNDEFINED.name, LandedState.ON_GROUND.name)
 
 
@@ -29,7 +27,7 @@ class History:
     def __init__(self) -> None:
         self._trail: deque[ipc.TrailPoint] = deque(maxlen=POINTS)
         self._lines: deque[LogEvent] = deque(maxlen=LINES)
-        self._path_ned: tuple[Vec3, ...] = ()
+        self.on_board = OnBoard()
         self._air_since_ns: int | None = None
 
     def logged(self, line: Log, now_ns: int, prefix: str) -> None:
@@ -54,19 +52,7 @@ class History:
         point = ipc.TrailPoint(seen.time_ns, place, speed_m_s, seen.battery_pct, in_air)
         self._trail.append(point)
 
-    def path(self, path_ned: tuple[Vec3, ...]) -> ipc.MissionPath | None:
-        """The path of the verified mission on board, where it is another one than before."""
-        if path_ned is self._path_ned:
-            return None
-        self._path_ned = path_ned
-        return self._told_path()
-
     def told(self) -> list[ipc.Event]:
         """For one that has just joined."""
         trail = ipc.History([*self._trail], [*self._lines], self._air_since_ns)
-        return [trail, self._told_path()] if self._path_ned else [trail]
-
-    def _told_path(self) -> ipc.MissionPath:
-        every = 1 + len(self._path_ned) // PATH_POINTS
-        kept = [*self._path_ned[::every], *self._path_ned[-1:]] if every > 1 else self._path_ned
-        return ipc.MissionPath([enu_from_ned(point) for point in kept])
+        return [trail, *self.on_board.told()]

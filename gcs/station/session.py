@@ -541,8 +541,7 @@ class Session:
         """What screens are told ten times a second."""
         seen = self._snapshot(now_ns)
         self._history.seen(seen)
-        path = self._history.path(self._vehicles.first.missions.path_ned)
-        return [Emit(seen)] if path is None else [Emit(seen), Emit(path)]
+        return [Emit(seen), *map(Emit, self._history.on_board.news(self._vehicles.first))]
 
     def _snapshot(self, now_ns: int) -> ipc.Snapshot:
         first = self._vehicles.first

@@ -126,6 +126,11 @@ class Missions:
         return 0 if self._on_board is None else len(self._on_board.sent)
 
     @property
+    def plan(self) -> OnBoard | None:
+        """The verified mission on board."""
+        return self._on_board
+
+    @property
     def path_ned(self) -> tuple[Vec3, ...]:
         """Of the verified mission on board, as it is flown."""
         return () if self._on_board is None else self._path_ned

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gcs import ipc
 from gcs.gate.effects import Level
 from gcs.session.work import Log
-from gcs.station.history import LINES, PATH_POINTS, POINTS, History
+from gcs.station.history import LINES, POINTS, History
 from tests.unit.operator.fake_station import FakeStation
 
 
@@ -19,7 +19,7 @@ def flown_for(seconds: int) -> History:
 
 
 def test_a_second_of_flight_is_a_point_and_the_trail_is_bounded() -> None:
-    (told,) = flown_for(POINTS + 60).told()
+    told = flown_for(POINTS + 60).told()[0]
     assert isinstance(told, ipc.History)
     assert len(told.trail) == POINTS
     assert told.trail[-1].time_ns - told.trail[0].time_ns == (POINTS - 1) * 10**9
@@ -34,25 +34,6 @@ def test_of_the_log_the_latest_lines_are_kept_and_no_debug_ones() -> None:
     for n in range(LINES + 10):
         history.logged(Log(Level.INFO, "gate", f"line {n}"), n, "")
         history.logged(Log(Level.DEBUG, "loop", "late"), n, "")
-    (told,) = history.told()
+    told = history.told()[0]
     assert isinstance(told, ipc.History)
     assert [line.text for line in told.log] == [f"line {n}" for n in range(10, LINES + 10)]
-
-
-def test_the_path_of_a_mission_is_told_when_it_changes_and_to_whoever_joins() -> None:
-    history = History()
-    assert history.path(()) is None
-    path_ned = ((1.0, 2.0, -3.0), (4.0, 5.0, -6.0))
-    told = history.path(path_ned)
-    assert told == ipc.MissionPath([(2.0, 1.0, 3.0), (5.0, 4.0, 6.0)])
-    assert history.path(path_ned) is None
-    assert history.told()[1] == told
-    assert history.path(()) == ipc.MissionPath([])
-
-
-def test_a_long_path_is_thinned_and_keeps_its_end() -> None:
-    long_ned = tuple((float(n), 0.0, 0.0) for n in range(5 * PATH_POINTS + 1))
-    told = History().path(long_ned)
-    assert told is not None
-    assert len(told.points_enu) <= PATH_POINTS
-    assert told.points_enu[-1] == (0.0, 5.0 * PATH_POINTS, 0.0)
