@@ -130,6 +130,11 @@ class Conversation:
         self._last_id += 1
         return ipc.Preflight(self._last_id)
 
+    def list_operations(self) -> ipc.ListOperations:
+        """Number a question for what was accepted so far: what is to be sent."""
+        self._last_id += 1
+        return ipc.ListOperations(self._last_id)
+
     def preflight_answer(self, number: int) -> ipc.PreflightReport | None:
         """The answer to the question of that number, once it is there."""
         report = self.preflight_report

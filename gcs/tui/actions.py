@@ -9,6 +9,7 @@ from pathlib import Path
 from time import monotonic
 
 import msgspec
+from textual.events import Event, Key, Paste
 
 from gcs import ipc, request_words, resources
 from gcs.operator import event_text
@@ -23,6 +24,7 @@ from gcs.tui.leaving import LeavingApp
 from gcs.tui.panels import map_panel
 from gcs.tui.panels.log_panel import LogPanel
 from gcs.tui.scene import REFUSED, Answer
+from gcs.tui.verdict_ahead import VerdictAhead, typed_line
 
 
 class KeyActions(LeavingApp):
@@ -52,11 +54,14 @@ class KeyActions(LeavingApp):
 
     # ---------------------------------------------------------------- keys: the one door
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+    async def on_event(self, event: Event) -> None:
         """While a line is typed the keys are its letters."""
-        if action == "press" and self.query_one(CommandLine).display:
-            return parameters[0] in ALWAYS
-        return True
+        typed = isinstance(event, Key | Paste) and not event.is_forwarded
+        line = self.query_one(CommandLine) if typed and self.query(CommandLine) else None
+        if line is None or not line.display or (isinstance(event, Key) and event.key in ALWAYS):
+            await super().on_event(event)
+        elif isinstance(event, Key | Paste):
+            await line.take(event)
 
     async def action_press(self, name: str) -> None:
         """Every key of ours comes through here.  Under an open page nothing is sent unseen: any key
@@ -95,21 +100,28 @@ class KeyActions(LeavingApp):
 
     def _set_pending(self, pending: PendingGoal) -> None:
         before, self.scene.pending = self.scene.pending, pending
-        if before.goal != pending.goal:
+        if before.ask != pending.ask:
             self.scene.pending_set = True
             self._connection.send(ipc.Pending(pending.goal_enu, pending.yaw_deg))
             self._look_ahead()
         self.redraw_goal()
 
     def _look_ahead(self) -> None:
-        """Ask what the gate would say to the pending goal, where that is due."""
-        scene, now_s = self.scene, monotonic()
-        if scene.lost or not scene.heard_vehicle or self._leaving or scene.velocity is not None:
+        """Ask what the gate would say to the pending goal and to a typed line, where it is due."""
+        scene = self.scene
+        if scene.lost or not scene.heard_vehicle or self._leaving:
             return
-        goal = scene.pending.goal
-        if scene.ahead.due(goal, now_s):
-            check = scene.talk.check(_goto(scene.pending))
-            scene.ahead.asked(goal, check.asked.id, now_s)
+        if scene.typed is not None:
+            if scene.typed.ask is not None:
+                self._ask_about(scene.typed.ask, scene.typed_ahead)
+        elif scene.velocity is None:
+            self._ask_about(scene.pending.ask, scene.ahead)
+
+    def _ask_about(self, ask: ipc.Ask, ahead: VerdictAhead) -> None:
+        now_s = monotonic()
+        if ahead.due(ask, now_s):
+            check = self.scene.talk.check(ask)
+            ahead.asked(ask, check.asked.id, now_s)
             self._connection.send(check)
 
     def action_move(self, direction: str) -> None:
@@ -160,7 +172,7 @@ class KeyActions(LeavingApp):
         self._request(ipc.Ask(0, word))
 
     def action_send(self) -> None:
-        self._request(_goto(self.scene.pending))
+        self._request(self.scene.pending.ask)
 
     def action_take_off(self) -> None:
         self._request(ipc.Ask(0, "takeoff", up_m=self.scene.pending.take_off_up_m))
@@ -246,18 +258,27 @@ class KeyActions(LeavingApp):
     def action_search(self) -> None:
         self.query_one(CommandLine).open("/")
 
-    def on_command_line_entered(self, entered: CommandLine.Entered) -> None:
+    def entered(self, prompt: str, text: str) -> None:
+        """A line was finished."""
         self.scene.note_key()
-        if entered.prompt == ":":
+        if prompt == ":":
             self._then.clear()
-            self._run_line(entered.text)
+            self._run_line(text)
             self.redraw()
 
     def on_input_changed(self, changed: CommandLine.Changed) -> None:
-        """What is searched for is shown while it is typed."""
+        """What is searched for, or would be answered, is shown while it is typed."""
         if self.query_one(CommandLine).prompt == "/":
             self.query_one(LogPanel).search(changed.value)
         self.redraw()
+
+    def _look_at_line(self) -> None:
+        """What Enter would send now, where a line is typed."""
+        line, scene = self.query_one(CommandLine), self.scene
+        if not line.display or line.prompt != ":":
+            scene.typed = None
+        elif scene.typed is None or scene.typed.text != line.value:
+            scene.typed = typed_line(line.value)
 
     def _run_line(self, text: str) -> None:
         try:
@@ -301,7 +322,3 @@ def _with_file(request: ipc.Ask) -> ipc.Ask:
         with contextlib.suppress(resources.MissionNotFoundError):
             path = resources.find(request.path).absolute()
     return msgspec.structs.replace(request, path=str(path))
-
-
-def _goto(pending: PendingGoal) -> ipc.Ask:
-    return ipc.Ask(0, "goto", goal_enu=pending.goal_enu, yaw_deg=pending.yaw_deg)

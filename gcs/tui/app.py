@@ -129,7 +129,7 @@ class FlyApp(KeyActions):
     # ------------------------------------------------------------------------- screen
 
     def compose(self) -> ComposeResult:
-        scene, line = self.scene, CommandLine()
+        scene, line = self.scene, CommandLine(self.entered)
         graphs = Graphs(scene.numbers)
         yield Panel(lambda columns, _: frame_panels.header(scene, columns), "header")
         yield Panel(lambda columns, _: frame_panels.alarms(scene, columns), "alarms")
@@ -173,6 +173,7 @@ class FlyApp(KeyActions):
         for event in self._first_events:
             self._handle(event)
         self._connection.listen(lambda event: self._hear(loop, event))
+        self._connection.send(self.scene.talk.list_operations())
         self.set_interval(REDRAW_S, self.redraw)
         self.set_interval(STREAM_S, self._stream)
         self.set_interval(FOLDED_AFTER_S, self.query_one(LogPanel).tell_folded)
@@ -208,6 +209,9 @@ class FlyApp(KeyActions):
 
     def redraw(self) -> None:
         """Draw every panel anew from the scene; ring where an alarm wants it."""
+        if not self.query("#alarms"):
+            return  # the screen has been given back
+        self._look_at_line()
         self._look_ahead()
         if self.scene.alarms.rings(monotonic()):
             self.bell()
@@ -217,8 +221,6 @@ class FlyApp(KeyActions):
 
     def _make_room(self) -> None:
         """As many rows as the alarms, the answer and a typed line need."""
-        if not self.query("#alarms"):
-            return  # the screen has been given back
         self.query_one("#alarms").display = bool(self.scene.alarms.open)
         panel = self.query_one("#answer")
         rows = vehicle_panel.answer_rows(self.scene, panel.content_size.width)

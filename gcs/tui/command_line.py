@@ -7,10 +7,11 @@ Ctrl-Space aborts at once, and `abort` is a word like any other.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from typing import ClassVar, Final
 
 from textual.binding import Binding, BindingType
-from textual.message import Message
+from textual.events import Key, Paste
 from textual.widgets import Input
 
 from gcs.tui.completion import Completed, Known, complete
@@ -30,15 +31,10 @@ class CommandLine(Input):
         Binding("tab", "complete", show=False),
     ]
 
-    class Entered(Message):
-        """A line was finished with Enter."""
-
-        def __init__(self, prompt: str, text: str) -> None:
-            super().__init__()
-            self.prompt, self.text = prompt, text
-
-    def __init__(self) -> None:
+    def __init__(self, entered: Callable[[str, str], None]) -> None:
+        """`entered` is given the prompt and the text of a line that was finished with Enter."""
         super().__init__(id="line", select_on_focus=False)
+        self._entered = entered
         self.display = False
         self.prompt = ":"
         self.known = Known()
@@ -52,7 +48,18 @@ class CommandLine(Input):
         self.value = ""
         self.placeholder = "a word, as help lists them" if prompt == ":" else "search the log"
         self.display = True
-        self.focus()
+        self.screen.set_focus(self)
+
+    async def take(self, typed: Key | Paste) -> None:
+        """Do it now.  Left to the queues of Textual, what comes in one burst with the key that
+        opens the line, or that ends it, would be lost or overtake it."""
+        if isinstance(typed, Paste):
+            self.insert_text_at_cursor("".join(typed.text.splitlines()[:1]))
+        elif typed.is_printable and typed.character:
+            self.insert_text_at_cursor(typed.character)
+        else:
+            for binding in self._bindings.key_to_bindings.get(typed.key, ()):
+                await self.app.run_action(binding.action, self)
 
     def action_close(self) -> None:
         self.value = ""  # a search ends with it
@@ -72,16 +79,15 @@ class CommandLine(Input):
             self.value = self.offered.text
             self.cursor_position = len(self.value)
 
-    def on_input_submitted(self, submitted: Input.Submitted) -> None:
-        submitted.stop()
+    async def action_submit(self) -> None:
         text = self.value.strip()
         if self.prompt == ":" and text and (not self._history or self._history[-1] != text):
             self._history.append(text)
-        if text:
-            self.post_message(self.Entered(self.prompt, text))
-        elif self.prompt == "/":
+        if not text and self.prompt == "/":
             self.value = ""
         self._hide()
+        if text:
+            self._entered(self.prompt, text)
 
     def hint(self) -> str:
         """What Tab offers."""

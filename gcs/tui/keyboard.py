@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from gcs.frames import Vec3
+from gcs.ipc import Ask
 
 START_ENU: Final[Vec3] = (0.0, 0.0, 0.5)
 STEPS_M: Final[tuple[float, ...]] = (0.1, 0.5, 1.0, 5.0, 10.0)
@@ -57,9 +58,9 @@ class PendingGoal:
     step_m: float = 1.0
 
     @property
-    def goal(self) -> tuple[Vec3, float | None]:
+    def ask(self) -> Ask:
         """What is sent of it."""
-        return self.goal_enu, self.yaw_deg
+        return Ask(0, "goto", goal_enu=self.goal_enu, yaw_deg=self.yaw_deg)
 
     def moved(self, direction: str) -> PendingGoal:
         """One step on; rounded to the millimetre, so that ten steps of 0.1 m make 1 m."""

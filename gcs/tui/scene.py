@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from gcs import ipc
+from msgspec import structs
+
+from gcs import ipc, request_words
 from gcs.gate.states import LandedState, State
 from gcs.operator import control_text, event_text
 from gcs.operator.conversation import Conversation, TrackedRequest
+from gcs.operator.standstill import Standstill
 from gcs.tui.alarms import Alarms
 from gcs.tui.flight_numbers import FlightNumbers
 from gcs.tui.keyboard import PendingGoal, VelocityKeys
-from gcs.tui.verdict_ahead import VerdictAhead
+from gcs.tui.verdict_ahead import TypedLine, VerdictAhead
 from gcs.tui.wind import Wind, wind_of
 
 TRAIL_POINTS = 800
@@ -52,6 +56,8 @@ class Scene:
     pending: PendingGoal = field(default_factory=PendingGoal)
     pending_set: bool = False  # by the operator; else it follows a take-off
     ahead: VerdictAhead = field(default_factory=VerdictAhead)
+    typed: TypedLine | None = None  # while one is typed
+    typed_ahead: VerdictAhead = field(default_factory=VerdictAhead)
     alarms: Alarms = field(default_factory=Alarms)
     velocity: VelocityKeys | None = None  # in velocity mode
     talk: Conversation = field(default_factory=Conversation)
@@ -68,6 +74,7 @@ class Scene:
     numbers: FlightNumbers = field(default_factory=FlightNumbers)
     wind: Wind | None = None
     fence_on: bool = True
+    _standstill: Standstill = field(default_factory=Standstill)
     _up: bool = False
     _key_since_refusal: bool = True
     heard_vehicle: bool = False
@@ -133,6 +140,7 @@ class Scene:
         match event:
             case ipc.Checked():
                 self.ahead.told(event)
+                self.typed_ahead.told(event)
             case ipc.Hello():
                 self.zones = event.fence
             case ipc.Fences(zones):
@@ -143,9 +151,12 @@ class Scene:
                 self._forget_old_answer()
                 self._leave_trail(event.pos_enu)
                 self.numbers.seen(event)
+                if stands := self._standstill.news(event):
+                    self._show_answer(stands, COMPLETE)
             case ipc.StateEvent():
                 self.last_move = event
                 self.ahead.outdate()
+                self.typed_ahead.outdate()
             case ipc.History():
                 self._note_history(event)
             case ipc.MissionPath(points_enu):
@@ -155,15 +166,20 @@ class Scene:
             case ipc.MessageEvent():
                 self.wind = wind_of(event, self.wind)
             case ipc.VerdictEvent():
-                sentence = event_text.refused_by_rule(event) or event.sentence
-                self._show_answer(_label(event, tracked), event.outcome, event.code, sentence)
+                label = _label(event, tracked)
+                line = event_text.verdict_line(label, event)
+                self._show_answer(line, event.outcome, _refused_words(label, event))
             case ipc.EndingEvent():
                 self.progress = None
                 if tracked is not None and tracked.completed:
                     self._note_completed(tracked.sent)
+                line = self._standstill.outcome(_label(event, tracked), event, self.snapshot)
                 if not self._says_it_is_taken(event):
-                    label = _label(event, tracked)
-                    self._show_answer(label, event.ended, event.code, event.sentence)
+                    self._show_answer(line, event.ended)
+            case ipc.OperationList(_, operations):
+                self._note_operations(operations)
+            case ipc.Operation() if event.client != self.talk.number:
+                self.decisions.append(_decision(event))
             case ipc.ProgressEvent():
                 # The last step of a transfer needs no ending of the request to be over.
                 self.progress = None if event.done >= event.total > 0.0 else event
@@ -174,19 +190,15 @@ class Scene:
         """The operator has pressed a key: what was refused before has been read."""
         self._key_since_refusal = True
 
-    def _show_answer(self, label: str, kind: str, code: str, sentence: str) -> None:
-        """A refusal stays until the next key, whatever else ends meanwhile."""
-        line = event_text.answer_line(label, kind, code, sentence)
+    def _show_answer(self, line: str, kind: str, refused: str = "") -> None:
+        """A refusal, which is worded for its own lines, stays until the next key, whatever else
+        ends meanwhile."""
         self.decisions.append(Decision(self.now_ns, line, kind))
         if kind == REFUSED:
             self._key_since_refusal = False
-            why = event_text.reason(kind, code, sentence)
-            text = f"refused {code} {label}: {why}" if why else f"refused {code} {label}"
-        elif self._key_since_refusal or self.answer.kind != REFUSED:
-            text = line
-        else:
+        elif self.answer.kind == REFUSED and not self._key_since_refusal:
             return
-        self.answer = Answer(text, kind, self.now_ns)
+        self.answer = Answer(refused or line, kind, self.now_ns)
 
     def _forget_old_answer(self) -> None:
         """What is under way, or refused and perhaps not read yet, is not forgotten."""
@@ -220,11 +232,37 @@ class Scene:
             self._leave_trail(point.pos_enu)
         self.numbers.before(before)
 
+    def _note_operations(self, operations: Sequence[ipc.Operation]) -> None:
+        """What was accepted before this operator has joined, and how it ended."""
+        begun = [structs.replace(each, state="running", ended_ns=None) for each in operations]
+        told = [*begun, *(each for each in operations if each.ended_ns is not None)]
+        before = sorted(map(_decision, told))
+        self.decisions = deque([*before, *self.decisions], maxlen=DECISIONS)
+
     def _leave_trail(self, pos_enu: ipc.Vec3 | None) -> None:
         if pos_enu is None:
             return
         if not self.trail or math.dist(self.trail[-1], pos_enu) >= TRAIL_STEP_M:
             self.trail.append(pos_enu)
+
+
+def _decision(operation: ipc.Operation) -> Decision:
+    """Of an operation of somebody else: that it was accepted, or how it ended."""
+    label = f"{request_words.label(operation.asked)} of operator {operation.client}"
+    if operation.ended_ns is None:
+        return Decision(operation.since_ns, f"{label}: {ACCEPTED}", ACCEPTED)
+    line = event_text.answer_line(label, operation.state, operation.code, operation.sentence)
+    return Decision(operation.ended_ns, line, operation.state)
+
+
+def _refused_words(label: str, event: ipc.VerdictEvent) -> str:
+    """Code first, so that it is seen where the line is cut; empty if it was not refused."""
+    if event.outcome != REFUSED:
+        return ""
+    sentence = event_text.refused_by_rule(event) or event.sentence
+    why = event_text.reason(REFUSED, event.code, sentence)
+    told = f"refused {event.code} {label}"
+    return f"{told}: {why}" if why else told
 
 
 def _label(event: ipc.VerdictEvent | ipc.EndingEvent, tracked: TrackedRequest | None) -> str:

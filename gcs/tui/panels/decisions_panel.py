@@ -31,4 +31,4 @@ def draw(scene: Scene, columns: int, rows: int) -> Text:
     picture = Text(no_wrap=True, end="")
     for n, (line, style) in enumerate(told):
         picture.append("\n" if n else "").append(line, style)
-    return picture if told else Text("nothing decided yet", look.DIM)
+    return picture if told else Text("nothing accepted or refused yet", look.DIM)

@@ -109,9 +109,12 @@ def _markers(canvas: Canvas, view: View, scene: Scene) -> None:
         canvas.glyph(*goal, ACTIVE, look.ACTIVE)
     if scene.other_goal is not None and not scene.in_control:
         canvas.glyph(*view.dots(*scene.other_goal.goal_enu[:2]), OTHERS, look.PENDING)
-    ahead = scene.ahead.of(scene.pending.goal)
+    goal_enu, ahead = scene.pending.goal_enu, scene.ahead.of(scene.pending.ask)
+    typed = scene.typed
+    if typed is not None and typed.ask is not None and typed.goal_enu is not None:
+        goal_enu, ahead = typed.goal_enu, scene.typed_ahead.of(typed.ask)
     mark = REFUSED if ahead is Ahead.REFUSED else PENDING
-    canvas.glyph(*view.dots(*scene.pending.goal_enu[:2]), mark, look.AHEAD[ahead])
+    canvas.glyph(*view.dots(*goal_enu[:2]), mark, look.AHEAD[ahead])
     if seen is not None and seen.pos_enu is not None:
         char = "●" if seen.yaw_deg is None else arrow(seen.yaw_deg)
         style = look.DIM if scene.lost else look.VEHICLE

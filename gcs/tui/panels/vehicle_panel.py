@@ -103,11 +103,16 @@ def goals(scene: Scene) -> Text:
 
 
 def ahead(scene: Scene) -> Text:
-    """One line: what the gate would say to Enter."""
-    style = look.AHEAD[scene.ahead.of(scene.pending.goal)]
-    if scene.velocity is not None or not scene.heard_vehicle or scene.lost:
+    """One line: what the gate would say to Enter, or what a typed line still needs."""
+    typed, asked = scene.typed, scene.ahead
+    if not scene.heard_vehicle or scene.lost or (scene.velocity is not None and typed is None):
         return Text("")
-    return Text(scene.ahead.words(scene.pending.goal), style, no_wrap=True, overflow="ellipsis")
+    ask = scene.pending.ask
+    if typed is not None:
+        if typed.ask is None:
+            return Text(typed.hint, look.DIM, no_wrap=True, overflow="ellipsis")
+        ask, asked = typed.ask, scene.typed_ahead
+    return Text(asked.words(ask), look.AHEAD[asked.of(ask)], no_wrap=True, overflow="ellipsis")
 
 
 def answer(scene: Scene, columns: int) -> Text:

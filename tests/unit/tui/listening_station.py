@@ -26,7 +26,7 @@ class ListeningStation:
 
     def send(self, command: ipc.Command) -> bool:
         wire = ipc.decode_command(ipc.encode(command))
-        looks = isinstance(wire, ipc.Check | ipc.Preflight | ipc.Subscribe)
+        looks = isinstance(wire, ipc.Check | ipc.Preflight | ipc.Subscribe | ipc.ListOperations)
         (self.looked if looks else self.sent).append(wire)
         self.say(*self.station.handle(wire, self.time_s))
         return True

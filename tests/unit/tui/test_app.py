@@ -254,6 +254,43 @@ def test_a_refusal_stays_until_the_next_key_whatever_else_ends() -> None:
     flown(script)
 
 
+def test_a_stop_is_told_twice_its_mode_is_seen_and_the_vehicle_stands() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        fast = msgspec.structs.replace(
+            station.station.snapshot(), state="HOLDING", v_enu=(4.5, 0.0, 0.0)
+        )
+        station.say(fast)
+        await pilot.press("h")
+        await drawn(app, pilot)
+        assert "hold: complete: hold mode seen, still moving at 4.5 m/s" in screen_text(app)
+        station.say(msgspec.structs.replace(fast, v_enu=(0.1, 0.0, 0.0)))
+        await drawn(app, pilot)
+        assert "hold: the vehicle stands" in screen_text(app)
+        assert [each.text for each in app.scene.decisions][-1] == "hold: the vehicle stands"
+
+    flown(script)
+
+
+def test_whoever_joins_sees_what_was_decided_and_what_others_are_told() -> None:
+    asked = ipc.Ask(3, "goto", goal_enu=(3.0, 0.0, 2.0))
+    goto = ipc.Operation(7, asked, 4, "gcs fly, pid 1", 2 * 10**9)
+    arm = ipc.Operation(6, ipc.Ask(2, "arm"), 4, "gcs fly, pid 1", 0, "complete", ended_ns=10**9)
+
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        assert any(isinstance(each, ipc.ListOperations) for each in station.looked)
+        station.say(ipc.OperationList(1, [arm, goto]))
+        station.say(msgspec.structs.replace(goto, state="aborted", code="OPERATOR", ended_ns=3))
+        await pilot.pause()
+        assert [each.text for each in app.scene.decisions] == [
+            "arm of operator 4: accepted",
+            "arm of operator 4: complete",
+            "goto 3 0 2 of operator 4: accepted",
+            "goto 3 0 2 of operator 4: aborted OPERATOR",
+        ]
+
+    flown(script)
+
+
 def test_a_transfer_is_shown_until_its_last_step() -> None:
     async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         station.say(ipc.ProgressEvent(9, "reading back", 3, 7, "items"))

@@ -6,12 +6,14 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from textual.events import Key, Paste
 from textual.pilot import Pilot
 
 from gcs import ipc
 from gcs.request_words import WORDS, Doer
 from gcs.tui.app import FlyApp
 from gcs.tui.completion import Known, complete, modes_of
+from gcs.tui.verdict_ahead import LEAST_S, typed_line
 from tests.unit.operator.fake_station import FakeStation
 from tests.unit.tui.flown import drawn, flown, screen_text
 from tests.unit.tui.listening_station import ListeningStation
@@ -38,6 +40,62 @@ def test_a_typed_word_is_sent_and_space_types_a_space() -> None:
         assert station.requests() == ["goto", "arm"]
 
     flown(script)
+
+
+def test_what_comes_in_one_burst_keeps_its_order() -> None:
+    """As a paste into a terminal without bracketed paste, or a quick hand, sends it."""
+
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        names = {"\r": "enter", " ": "space", ":": "colon"}
+        for letter in ":goto 1 0 2\r:land\r h:hold":
+            app.post_message(Key(names.get(letter, letter), None if letter == "\r" else letter))
+        app.post_message(Paste("& # of two\nlines"))
+        app.post_message(Key("enter", None))
+        await pilot.pause(0.1)
+        assert station.requests() == ["goto", "land", "abort", "hold", "hold"]
+
+    flown(script)
+
+
+def test_a_typed_request_is_judged_before_it_is_sent() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.refusals[7.0, 0.0, 2.0] = ("OUTSIDE_FENCE", "350.0 m too far")
+        await pilot.press("colon", *"goto", "space")
+        await drawn(app, pilot)
+        assert "goto: expected 3 numbers EAST NORTH UP [YAW_DEG]" in screen_text(app)
+        await pilot.press("7", "space", "0", "space", "2")
+        await pilot.pause(LEAST_S + 0.3)
+        await drawn(app, pilot)
+        assert "Enter: refused OUTSIDE_FENCE: 350.0 m too far" in screen_text(app)
+        assert station.checked_goals()[-1] == (7.0, 0.0, 2.0)
+        assert station.requests() == []
+        await pilot.press("escape")
+        await drawn(app, pilot)
+        assert "OUTSIDE_FENCE" not in screen_text(app)
+
+    flown(script, (80, 24))
+
+
+@pytest.mark.parametrize(
+    ("text", "asks", "hint"),
+    [
+        ("", "", ""),
+        ("got", "", ""),
+        ("goto 1 2", "", "goto: expected 3 numbers EAST NORTH UP [YAW_DEG], got 2"),
+        ("goto 1 2 nan", "", "goto: UP: expected a number, got 'nan'"),
+        ("takeoff 3", "takeoff", ""),
+        ("forward 5", "goto", ""),
+        ("mission upload a.plan", "", ""),  # the gate is not asked for it
+        ("mission fly a.plan", "", ""),
+        ("velocity 1 0 0", "", ""),
+    ],
+)
+def test_what_the_gate_can_be_asked_of_a_line(text: str, asks: str, hint: str) -> None:
+    line = typed_line(text)
+    assert (line.ask.word if line.ask else "") == asks
+    assert line.hint.startswith(hint)
+    assert bool(line.hint) == bool(hint)
+    assert line.goal_enu is None
 
 
 def test_every_word_that_asks_a_station_is_one_of_the_line() -> None:
@@ -92,8 +150,8 @@ def test_a_mission_is_uploaded_and_then_started_by_one_line() -> None:
 def test_a_typed_velocity_ends_by_itself() -> None:
     async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         station.station.state = "HOVERING"
-        await typed(pilot, "velocity 1 0 0 0.3")
-        await pilot.pause(0.6)
+        await typed(pilot, "velocity 1 0 0 0.8")
+        await pilot.pause(1.2)
         assert station.requests() == ["stream_begin", "stream_end"]
         assert ipc.Stream(v_enu=(1.0, 0.0, 0.0)) in station.sent
 

@@ -18,8 +18,8 @@ from tests.unit.tui.listening_station import ListeningStation
 
 pytestmark = pytest.mark.slow  # the screen's own timers
 
-HERE: tuple[ipc.Vec3, None] = (0.0, 0.0, 2.0), None
-THERE: tuple[ipc.Vec3, None] = (500.0, 0.0, 2.0), None
+HERE = ipc.Ask(0, "goto", goal_enu=(0.0, 0.0, 2.0))
+THERE = ipc.Ask(0, "goto", goal_enu=(500.0, 0.0, 2.0))
 CLEARS = ipc.Checked(1, "goto", "accepted")
 OUTSIDE = ipc.Checked(
     1, "goto", "refused", "BUSY", "it climbs", goal_code="OUTSIDE_FENCE", goal_sentence="350 m out"
@@ -79,13 +79,13 @@ def test_the_mark_on_the_map_has_the_colour_of_the_verdict(answer: ipc.Checked, 
     for event in [*FakeStation().hello(), FakeStation().snapshot()]:
         scene.update(event)
     scene.pending = PendingGoal((1.5, -1.0, 2.0))
-    scene.ahead.asked(scene.pending.goal, 1, 0.0)
+    scene.ahead.asked(scene.pending.ask, 1, 0.0)
     scene.ahead.told(answer)
     picture = map_panel.draw(scene, 60, 20)
     map_rows = picture.plain.rsplit("\n", 1)[0]
     at = map_rows.index(mark)
     (style,) = {str(span.style) for span in picture.spans if span.start <= at < span.end}
-    assert style == look.AHEAD[scene.ahead.of(scene.pending.goal)]
+    assert style == look.AHEAD[scene.ahead.of(scene.pending.ask)]
 
 
 def test_a_goal_is_judged_on_the_screen_before_it_is_sent() -> None:
