@@ -74,6 +74,7 @@ def _charts(vehicle: VehicleFlight) -> list[Chart]:
     plots, autopilot = vehicle.plots, vehicle.autopilot
     rejected = REJECTED.get(autopilot, REJECTED["px4"]).value
     kind = autopilot if autopilot in FAIR else "ardupilot"
+    dilution = HDOP_BAD.get(autopilot, HDOP_BAD["px4"]).value
     fair, bad = FAIR[kind].value, BAD[kind].value
     shaken = f"good below {fair:g}, bad above {bad:g} m/s²"
     if kind == "px4":
@@ -127,10 +128,10 @@ def _charts(vehicle: VehicleFlight) -> list[Chart]:
             Chart(
                 "gps",
                 "GPS",
-                f"satellites; HDOP, bad above {HDOP_BAD.value:g}",
-                limits=[LimitLine(HDOP_BAD.value, "warning", 1)],
+                f"satellites; HDOP, bad above {dilution:g}",
+                limits=[LimitLine(dilution, "warning", 1)],
                 low=0.0,
-                right_to=1.25 * HDOP_BAD.value,
+                right_to=1.25 * dilution,
             ),
             plots.gps,
             Line("satellites", "", steps=True),

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs.frames import Vec3
+from gcs.report import ConditionItem
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,8 @@ class Pose:
     roll_deg: float
     pitch_deg: float
     yaw_deg: float
+    alt_rel_m: float | None = None
+    """Above home, where the vehicle told it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +113,8 @@ class Machine:
     control: str
     severity: str
     goal_enu: Vec3 | None
+    conditions: tuple[ConditionItem, ...] | None = None
+    """What makes up the severity; None: an older record, which has it in its log alone."""
 
 
 @dataclass(frozen=True, slots=True)

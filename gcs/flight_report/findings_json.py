@@ -8,7 +8,7 @@ from gcs.flight_report.findings.finding import Check, Finding
 from gcs.flight_report.flight import Flight, Totals, VehicleFlight
 from gcs.flight_report.number_format import utc
 from gcs.flight_report.summary import (
-    first_trouble,
+    main_trouble,
     vehicle_name,
     what_happened,
     what_went_wrong,
@@ -24,7 +24,7 @@ class VehicleReport(msgspec.Struct):
     requests: int
     refused: int
     what_went_wrong: str
-    first_trouble: Finding | None
+    main_trouble: Finding | None
     findings: list[Finding]
     checks: list[Check]
 
@@ -74,7 +74,7 @@ def _vehicle(flight: Flight, vehicle: VehicleFlight) -> VehicleReport:
         len(vehicle.requests) + vehicle.requests_left_out,
         sum(request.outcome == "refused" for request in vehicle.requests),
         what_went_wrong(flight, vehicle),
-        first_trouble(vehicle),
+        main_trouble(vehicle),
         vehicle.findings,
         vehicle.checks,
     )

@@ -70,10 +70,13 @@ class Totals:
     took_off_s: float | None = None
     landed_s: float | None = None
     """The last time; None while it flies at the end of the record."""
+    began_in_air: bool = False
     max_up_m: float | None = None
-    """Above the take-off point."""
+    """Above the take-off point; where the record begins in the air, above home, or above where it
+    landed, or else above where the record begins (`up_from`)."""
     max_distance_m: float | None = None
-    """From the take-off point, horizontally."""
+    """From the take-off point, or where the record begins, horizontally."""
+    up_from: str = "its take-off point"
     max_speed_mps: float | None = None
     voltage_v: tuple[float, float] | None = None
     """First and last."""

@@ -15,7 +15,7 @@ from gcs.flight_report.flight import Flight, Request, VehicleFlight
 from gcs.flight_report.html_text import text
 from gcs.flight_report.number_format import clock
 from gcs.flight_report.projection import Box, View, box_of, ticks
-from gcs.flight_report.summary import first_trouble
+from gcs.flight_report.summary import main_trouble
 from gcs.flight_report.track import TrackPoint
 from gcs.frames import Vec3
 
@@ -129,7 +129,7 @@ def _drawing(
         if request.goal_enu is not None and request.word == "goto":
             parts.append(_goal(view, plane(request.goal_enu), request))
     parts += _ends(view, plane, points)
-    first = first_trouble(vehicle)
+    first = main_trouble(vehicle)
     if first is not None:
         near = min(points, key=lambda point: abs(point.t_s - first.t_s))
         x, y = view.px(*plane(near.enu))

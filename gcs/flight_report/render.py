@@ -19,12 +19,13 @@ from gcs.flight_report.number_format import duration, metres, utc
 from gcs.flight_report.path_svg import path_pictures
 from gcs.flight_report.summary import (
     consequences,
-    first_trouble,
+    main_trouble,
     other_vehicles,
     vehicle_name,
     what_happened,
     what_is_damaged,
     what_was_asked,
+    what_was_before,
     what_went_wrong,
 )
 from gcs.flight_report.timeline_html import timeline
@@ -119,15 +120,17 @@ def _verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
     asked = f'<p class="asked">{text(asked)}</p>' if asked else ""
     happened = f'<p class="lead">{text(what_happened(flight, vehicle))}</p>{asked}'
     wrong = what_went_wrong(flight, vehicle)
-    first = first_trouble(vehicle)
+    first = main_trouble(vehicle)
     chain = ""
     if vehicle is not None and first is not None:
         then = "".join(_consequence(later, first) for later in consequences(vehicle, first))
         chain = f'<ol class="chain">{then}</ol>' if then else ""
     level = first.level.value if first else "ok"
-    label = "What went wrong first" if first else "What went wrong"
+    before = what_was_before(vehicle)
+    before = f'<p class="before">{text(before)}</p>' if before else ""
     trouble = (
-        f'<div class="trouble-box {level}"><h2>{label}</h2><p>{text(wrong)}</p>{chain}</div>'
+        f'<div class="trouble-box {level}"><h2>What went wrong</h2><p>{text(wrong)}</p>'
+        f"{chain}{before}</div>"
         if wrong
         else ""
     )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from gcs.flight_report.findings.finding import Finding
+from itertools import pairwise
+
+from gcs.flight_report.findings.finding import CAUSE_WITHIN_S, Finding, Level, cause_of
 from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.number_format import clock, count, duration, metres, sentence
 
 _NAMES = {"px4": "PX4", "ardupilot": "ArduPilot"}
 CONSEQUENCES_WITHIN_S = 15.0
-SAME_TIME_S = 0.1
 MAX_CONSEQUENCES = 6
 
 
@@ -31,11 +32,12 @@ def what_happened(flight: Flight, vehicle: VehicleFlight | None) -> str:
         if totals.first_armed_s is None:
             return f"The {name} was on the ground throughout, and never armed."
         return f"The {name} was armed for {duration(totals.armed_s)} and did not take off."
+    away_from = "where the record begins" if totals.began_in_air else "it"
     parts = [f"The {name} flew for {duration(totals.flying_s)}"]
     if totals.max_up_m is not None and totals.max_distance_m is not None:
         parts.append(
-            f"up to {metres(totals.max_up_m)} above its take-off point "
-            f"and {metres(totals.max_distance_m)} away from it"
+            f"up to {metres(totals.max_up_m)} above {totals.up_from} "
+            f"and {metres(totals.max_distance_m)} away from {away_from}"
         )
     if totals.take_offs > 1:
         parts.append(f"in {totals.take_offs} flights")
@@ -64,17 +66,28 @@ def what_was_asked(vehicle: VehicleFlight) -> str:
     return f"{count(total, 'request')}, {refused} of them refused."
 
 
-def first_trouble(vehicle: VehicleFlight | None) -> Finding | None:
-    """The first thing that went wrong in flight; else the first before it."""
-    if vehicle is None:
+def episodes(vehicle: VehicleFlight) -> list[list[Finding]]:
+    """What went wrong in flight, or else before it, in pieces: in each one thing followed another
+    within `CONSEQUENCES_WITHIN_S`.  Mild findings are left out where there are others."""
+    armed_s = vehicle.totals.first_armed_s or 0.0
+    troubles = [f for f in vehicle.went_wrong if f.t_s >= armed_s] or vehicle.went_wrong
+    troubles = [f for f in troubles if not f.mild] or troubles
+    pieces = [[finding] for finding in troubles[:1]]
+    for before, finding in pairwise(troubles):
+        if finding.t_s - before.t_s > CONSEQUENCES_WITHIN_S:
+            pieces.append([])
+        pieces[-1].append(finding)
+    return pieces
+
+
+def main_trouble(vehicle: VehicleFlight | None) -> Finding | None:
+    """What the worst that went wrong began with: of the episodes the first critical one, else the
+    first."""
+    pieces = [] if vehicle is None else episodes(vehicle)
+    if not pieces:
         return None
-    troubles = vehicle.went_wrong
-    armed_s = vehicle.totals.first_armed_s
-    if armed_s is not None:
-        for finding in troubles:
-            if finding.t_s >= armed_s:
-                return finding
-    return troubles[0] if troubles else None
+    critical = (each for each in pieces if any(f.level is Level.CRITICAL for f in each))
+    return cause_of(next(critical, pieces[0]))
 
 
 def consequences(vehicle: VehicleFlight, first: Finding) -> list[Finding]:
@@ -82,14 +95,28 @@ def consequences(vehicle: VehicleFlight, first: Finding) -> list[Finding]:
     later = [
         finding
         for finding in vehicle.went_wrong
-        if -SAME_TIME_S <= finding.t_s - first.t_s <= CONSEQUENCES_WITHIN_S and finding is not first
+        if -CAUSE_WITHIN_S <= finding.t_s - first.t_s <= CONSEQUENCES_WITHIN_S
+        and finding is not first
     ]
     return later[:MAX_CONSEQUENCES]
 
 
+def what_was_before(vehicle: VehicleFlight | None) -> str:
+    """One sentence: the first of what went wrong before the main trouble; empty: nothing did."""
+    main = main_trouble(vehicle)
+    if vehicle is None or main is None:
+        return ""
+    before = [f for f in vehicle.went_wrong if f.t_s < main.t_s - CAUSE_WITHIN_S]
+    if not before:
+        return ""
+    more = f", and {len(before) - 1} more" if len(before) > 1 else ""
+    detail = f" ({before[0].detail})" if before[0].detail else ""
+    return f"Before it, at {clock(before[0].t_s)}: {before[0].title}{detail}{more}."
+
+
 def what_went_wrong(flight: Flight, vehicle: VehicleFlight | None) -> str:
-    """One sentence: the first trouble, with its time."""
-    first = first_trouble(vehicle)
+    """One sentence: the main trouble, with its time."""
+    first = main_trouble(vehicle)
     if vehicle is None:
         return ""
     if first is None:

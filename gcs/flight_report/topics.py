@@ -27,7 +27,7 @@ from gcs.flight_report.facts import (
 )
 from gcs.flight_report.mavlink_readers import MAVLINK_READERS, Read
 from gcs.flight_report.onboard_logs import AUTOPILOT_OF_PREFIX, onboard_reader
-from gcs.report import PointEnu
+from gcs.report import ConditionItem, PointEnu
 
 AUTOPILOT_COMPONENT = 1
 UNREADABLE = (struct.error, msgspec.MsgspecError)
@@ -89,6 +89,7 @@ class _StateMessage(msgspec.Struct):
     roll_deg: float = 0.0
     pitch_deg: float = 0.0
     yaw_deg: float = 0.0
+    alt_rel_m: float | None = None
     armed: bool | None = None
     mode: str = ""
     landed: str = ""
@@ -104,6 +105,7 @@ class _MachineMessage(msgspec.Struct):
     control: str = ""
     severity: str = ""
     goal: PointEnu | None = None
+    conditions: tuple[ConditionItem, ...] | None = None
 
 
 class _DecisionMessage(msgspec.Struct):
@@ -143,6 +145,7 @@ def _state(data: bytes) -> list[Fact]:
                 found.roll_deg,
                 found.pitch_deg,
                 found.yaw_deg,
+                found.alt_rel_m,
             )
         )
     return facts
@@ -154,7 +157,9 @@ def _machine(data: bytes) -> list[Fact]:
     except msgspec.DecodeError:
         return []
     goal = found.goal.enu if found.goal else None
-    return [Machine(found.state, found.event, found.control, found.severity, goal)]
+    return [
+        Machine(found.state, found.event, found.control, found.severity, goal, found.conditions)
+    ]
 
 
 def _decision(data: bytes) -> list[Fact]:

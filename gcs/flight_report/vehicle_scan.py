@@ -24,7 +24,7 @@ from gcs.flight_report.facts import (
 from gcs.flight_report.findings.battery import BatteryDetector
 from gcs.flight_report.findings.estimator import AttitudeDetector, EstimatorDetector
 from gcs.flight_report.findings.failsafes import FailsafeDetector
-from gcs.flight_report.findings.finding import Detector, Finding, Situation
+from gcs.flight_report.findings.finding import Detector, Situation, in_order
 from gcs.flight_report.findings.gate import GateDetector
 from gcs.flight_report.findings.gps import FIX_3D, GpsDetector
 from gcs.flight_report.findings.link import LinkDetector
@@ -40,8 +40,10 @@ from gcs.frames import Vec3
 
 _IN_AIR = frozenset({"IN_AIR", "TAKEOFF", "LANDING"})
 _ON_GROUND = "ON_GROUND"
-_LATER = {"failsafe": 1, "gate": 2, "request": 3}
-"""Of findings at the same time, what follows from what: sensors, vehicle, gate, requests."""
+RISEN_M, DOWN_M = 0.5, 0.25
+"""Of a vehicle that does not say whether it is in the air: so far it rises from where it was armed
+when it takes off, and so near it comes to that height when it lands."""
+_BEGINNING = "where the record begins"
 NOT_ON_EARTH_M = 1e7
 """A position farther from its origin, or not a number, is no position."""
 _STEP_S = 2.0
@@ -58,10 +60,15 @@ class VehicleScan:
     _goal_up_m: float | None = None
     _take_off: Vec3 | None = None
     _here: Vec3 | None = None
+    _alt_rel_m: float | None = None
+    _flew_since_armed: bool = False
+    _armed_up_m: float | None = None
+    """Where it was armed; None: the record begins with an armed vehicle, or knows no place."""
     _has_sys_status: bool = False
     _open_requests: dict[int, Request] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.now.sysid = self.flight.sysid
         self._detectors = (
             GateDetector(),
             FailsafeDetector(),
@@ -92,7 +99,7 @@ class VehicleScan:
             result = detector.result(self.now)
             flight.checks += result.checks
             flight.findings += result.findings
-        flight.findings.sort(key=_in_order)
+        flight.findings.sort(key=in_order)
         if self.now.flying:
             flight.totals.landed_s = None
         return flight
@@ -135,33 +142,63 @@ class VehicleScan:
 
     def _status(self, fact: Status, t_s: float) -> None:
         totals, now = self.flight.totals, self.now
+        first = self._status_s is None
         step_s = 0.0 if self._status_s is None else min(t_s - self._status_s, _STEP_S)
         self._status_s = t_s
         totals.armed_s += step_s * now.armed
         totals.flying_s += step_s * now.flying
+        if fact.armed and not now.armed:
+            self._flew_since_armed = False
+            self._armed_up_m = self._here[2] if self._here and not first else None
         known = fact.landed in _IN_AIR or fact.landed == _ON_GROUND
-        flying = fact.landed in _IN_AIR if known else fact.armed
+        flying = fact.landed in _IN_AIR if known else fact.armed and self._has_risen()
         if flying and not now.flying:
-            totals.take_offs += 1
+            totals.began_in_air |= first
+            # By height alone a hop is no other flight.
+            totals.take_offs += known or not self._flew_since_armed
+            self._flew_since_armed = True
             totals.took_off_s = t_s if totals.took_off_s is None else totals.took_off_s
-            self._take_off = self._take_off or self._here
+            self._take_off = self._take_off or (None if first else self._here)
         elif now.flying and not flying:
-            totals.landed_s = t_s
+            self._landed(t_s)
         if fact.armed and totals.first_armed_s is None:
             totals.first_armed_s = t_s
-            self._take_off = self._here
+            self._take_off = None if totals.began_in_air else self._here
         now.armed, now.flying, now.mode = fact.armed, flying, fact.mode
-        now.in_air = fact.landed == "IN_AIR" if known else fact.armed
+        now.in_air = fact.landed == "IN_AIR" if known else flying
         lanes = self.flight.lanes
         lanes.mode.add(t_s, fact.mode)
         lanes.landed.add(t_s, fact.landed if known else ("armed" if fact.armed else "disarmed"))
         self.flight.plots.link.add(t_s, (fact.rx_hz, fact.lost_pct))
 
+    def _has_risen(self) -> bool:
+        if self._here is None or self._armed_up_m is None:
+            return True
+        return self._here[2] - self._armed_up_m > (DOWN_M if self.now.flying else RISEN_M)
+
+    def _landed(self, t_s: float) -> None:
+        totals = self.flight.totals
+        totals.landed_s = t_s
+        if totals.up_from == _BEGINNING and self._here and self._take_off and totals.max_up_m:
+            # The height that it came down to is a better zero than that it was met at.
+            totals.max_up_m += self._take_off[2] - self._here[2]
+            totals.up_from = "where it landed"
+
+    def _started(self, here: Vec3) -> Vec3:
+        """The place that heights and distances count from."""
+        if not self.flight.totals.began_in_air:
+            return here
+        self.flight.totals.up_from = _BEGINNING
+        if self._alt_rel_m is None:
+            return here
+        self.flight.totals.up_from = "home"
+        return (here[0], here[1], here[2] - self._alt_rel_m)
+
     def _pose(self, fact: Pose, t_s: float) -> None:
         if not all(abs(metres) < NOT_ON_EARTH_M for metres in fact.pos_enu):
             return
         flight, totals = self.flight, self.flight.totals
-        self._here = fact.pos_enu
+        self._here, self._alt_rel_m = fact.pos_enu, fact.alt_rel_m
         flight.track.add(t_s, fact.pos_enu, flying=self.now.flying)
         up_m = fact.pos_enu[2]
         flight.plots.height.add(t_s, (up_m, self._goal_up_m if self.now.flying else None))
@@ -171,7 +208,9 @@ class VehicleScan:
         if not self.now.flying:
             return
         totals.max_speed_mps = max(totals.max_speed_mps or 0.0, fact.groundspeed_mps)
-        start = self._take_off = self._take_off or fact.pos_enu
+        if self._take_off is None:
+            self._take_off = self._started(fact.pos_enu)
+        start = self._take_off
         totals.max_up_m = max(totals.max_up_m or 0.0, up_m - start[2])
         away_m = dist(start[:2], fact.pos_enu[:2])
         totals.max_distance_m = max(totals.max_distance_m or 0.0, away_m)
@@ -211,8 +250,3 @@ class VehicleScan:
         request.told(t_s, fact)
         if fact.phase != "verdict" or fact.outcome != "accepted":
             self._open_requests.pop(fact.request_id, None)
-
-
-def _in_order(finding: Finding) -> tuple[float, int, float]:
-    """By time; within a tenth of a second, what comes first as a cause."""
-    return round(finding.t_s, 1), _LATER.get(finding.subject, 0), finding.t_s

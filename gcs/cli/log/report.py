@@ -47,7 +47,12 @@ def report(
     from gcs.flight_report.findings_json import report_json
     from gcs.flight_report.render import page
     from gcs.flight_report.scan import scan
-    from gcs.flight_report.summary import what_happened, what_is_damaged, what_went_wrong
+    from gcs.flight_report.summary import (
+        what_happened,
+        what_is_damaged,
+        what_was_before,
+        what_went_wrong,
+    )
 
     file = one_record(file, last=last)
     if output is None and not as_json:
@@ -72,6 +77,7 @@ def report(
         what_happened(flight, shown),
         what_is_damaged(flight),
         what_went_wrong(flight, shown),
+        what_was_before(shown),
     )
     for line in filter(None, said):
         click.echo(line)

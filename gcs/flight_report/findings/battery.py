@@ -48,10 +48,10 @@ class BatteryDetector:
             self.voltage.rest(now.t_s)
             return
         if remaining_pct is not None:
-            self.remaining.update(now.t_s, remaining_pct)
+            self.remaining.update(now.t_s, remaining_pct, now.autopilot)
         if voltage_v is None or self.cells is None:
             return
-        self.voltage.update(now.t_s, voltage_v, judged=voltage_v / self.cells)
+        self.voltage.update(now.t_s, voltage_v, now.autopilot, voltage_v / self.cells)
         while self.recent and now.t_s - self.recent[0][0] > SAG_WINDOW_S:
             self.recent.popleft()
         self.recent.append((now.t_s, voltage_v))
@@ -59,11 +59,11 @@ class BatteryDetector:
 
     def result(self, now: Situation) -> Result:
         result = Result()
-        self.remaining.result(result)
+        self.remaining.result(result, now.autopilot)
         lowest, cells = self.voltage.worst.value, self.cells
         a_cell = lowest / cells if lowest is not None and cells else 0.0
         guessed = "" if self.cells_told else " (cells guessed)"
-        self.voltage.result(result, a_cell=a_cell, cells=f"{cells}{guessed}")
+        self.voltage.result(result, now.autopilot, a_cell=a_cell, cells=f"{cells}{guessed}")
         self._sag(result)
         return result
 

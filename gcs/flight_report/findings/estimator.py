@@ -21,11 +21,11 @@ class AttitudeDetector:
     def handle(self, fact: Fact, now: Situation) -> None:
         if isinstance(fact, Pose) and now.flying:
             # PX4 judges each by itself.
-            self.tilt.update(now.t_s, max(abs(fact.roll_deg), abs(fact.pitch_deg)))
+            self.tilt.update(now.t_s, max(abs(fact.roll_deg), abs(fact.pitch_deg)), now.autopilot)
 
     def result(self, now: Situation) -> Result:
         result = Result()
-        self.tilt.result(result)
+        self.tilt.result(result, now.autopilot)
         return result
 
 

@@ -19,10 +19,14 @@ class FailsafeText(NamedTuple):
     level: Level
     title: str
     source: str
+    subject: str
+    """What was wrong; "failsafe" where the text says only that something was done about it."""
 
 
-def _row(pattern: str, level: Level, title: str, source: str) -> FailsafeText:
-    return FailsafeText(re.compile(pattern, re.IGNORECASE), level, title, source)
+def _row(
+    pattern: str, level: Level, title: str, source: str, subject: str = "failsafe"
+) -> FailsafeText:
+    return FailsafeText(re.compile(pattern, re.IGNORECASE), level, title, source, subject)
 
 
 _PX4 = "texts of a PX4 1.14, recorded"
@@ -32,7 +36,11 @@ _MEMORY = "texts of the autopilots, from memory"
 TEXTS = (
     _row(r"^failsafe activated", Level.CRITICAL, "the vehicle's failsafe acted", _PX4),
     _row(
-        r"^connection to ground station lost", Level.WARNING, "the vehicle lost its station", _PX4
+        r"^connection to ground station lost",
+        Level.WARNING,
+        "the vehicle lost its station",
+        _PX4,
+        "link",
     ),
     _row(
         r"^(gcs|radio|battery|ekf|terrain|dead ?reckon) failsafe(?! cleared)",
@@ -40,22 +48,54 @@ TEXTS = (
         "the vehicle's failsafe acted",
         _COPTER,
     ),
-    _row(r"^battery \d+ is critical", Level.CRITICAL, "the battery was critical", _COPTER),
-    _row(r"^battery \d+ is low", Level.WARNING, "the battery was low", _COPTER),
-    _row(r"fence breached", Level.CRITICAL, "the vehicle was outside its own fence", _COPTER),
-    _row(r"geofence violation", Level.CRITICAL, "the vehicle was outside its own fence", _PX4),
+    _row(
+        r"^battery \d+ is critical", Level.CRITICAL, "the battery was critical", _COPTER, "battery"
+    ),
+    _row(r"^battery \d+ is low", Level.WARNING, "the battery was low", _COPTER, "battery"),
+    _row(
+        r"fence breached", Level.CRITICAL, "the vehicle was outside its own fence", _COPTER, "fence"
+    ),
+    _row(
+        r"geofence violation",
+        Level.CRITICAL,
+        "the vehicle was outside its own fence",
+        _PX4,
+        "fence",
+    ),
     _row(r"flight termination", Level.CRITICAL, "the flight was terminated", _PX4),
     _row(r"^ekf variance", Level.CRITICAL, "the vehicle's estimator failed", _MEMORY),
-    _row(r"^gps glitch(?!.*cleared)", Level.WARNING, "the GPS position jumped", _MEMORY),
-    _row(r"crash: disarming", Level.CRITICAL, "the vehicle found that it had crashed", _MEMORY),
-    _row(r"potential thrust loss", Level.CRITICAL, "a motor could give no more thrust", _MEMORY),
-    _row(r"motor \d+ failure", Level.CRITICAL, "a motor failed", _MEMORY),
-    _row(r"attitude failure", Level.CRITICAL, "the vehicle lost its attitude", _MEMORY),
-    _row(r"vibration compensation on", Level.WARNING, "vibration upset the height", _MEMORY),
+    _row(r"^gps glitch(?!.*cleared)", Level.WARNING, "the GPS position jumped", _MEMORY, "gps"),
     _row(
-        r"^critical battery|^emergency battery", Level.CRITICAL, "the battery was critical", _MEMORY
+        r"crash: disarming",
+        Level.CRITICAL,
+        "the vehicle found that it had crashed",
+        _MEMORY,
+        "attitude",
     ),
-    _row(r"^low battery", Level.WARNING, "the battery was low", _MEMORY),
+    _row(
+        r"potential thrust loss",
+        Level.CRITICAL,
+        "a motor could give no more thrust",
+        _MEMORY,
+        "motors",
+    ),
+    _row(r"motor \d+ failure", Level.CRITICAL, "a motor failed", _MEMORY, "motors"),
+    _row(r"attitude failure", Level.CRITICAL, "the vehicle lost its attitude", _MEMORY, "attitude"),
+    _row(
+        r"vibration compensation on",
+        Level.WARNING,
+        "vibration upset the height",
+        _MEMORY,
+        "vibration",
+    ),
+    _row(
+        r"^critical battery|^emergency battery",
+        Level.CRITICAL,
+        "the battery was critical",
+        _MEMORY,
+        "battery",
+    ),
+    _row(r"^low battery", Level.WARNING, "the battery was low", _MEMORY, "battery"),
 )
 """What a text that matches means; the first that matches counts."""
 
@@ -84,7 +124,7 @@ class FailsafeDetector:
             words = f"it said: {text}"
             self.waits_for_mode = True
             self.findings.append(
-                Finding("failsafe", row.level, now.t_s, row.title, words, source=row.source)
+                Finding(row.subject, row.level, now.t_s, row.title, words, source=row.source)
             )
 
     def _mode(self, mode: str, now: Situation) -> None:

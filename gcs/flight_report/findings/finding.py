@@ -46,6 +46,30 @@ class Finding:
     detail: str = ""
     until_s: float | None = None
     source: str = ""
+    mild: bool = False
+    """A warning that endangers nothing by itself: any other one is told before it."""
+
+
+CAUSE_WITHIN_S = 1.0
+"""A cause may be told so much later than what follows from it: batteries, GPS and estimator speak
+once or twice a second, texts and the gate at once."""
+_FOLLOWS = {"attitude": 1, "failsafe": 1, "gate": 2, "request": 3}
+"""Of findings at the same time, what follows from what: sensors, vehicle, gate, requests."""
+
+
+def in_order(finding: Finding) -> tuple[float, int, float]:
+    """By time; within a tenth of a second, what comes first as a cause."""
+    return round(finding.t_s, 1), _FOLLOWS.get(finding.subject, 0), finding.t_s
+
+
+def cause_of(episode: list[Finding]) -> Finding:
+    """Of findings in time order that are not empty: of those at its beginning the one that the
+    others follow from, and of several such the worst."""
+    at_once = [f for f in episode if f.t_s - episode[0].t_s <= CAUSE_WITHIN_S]
+    return min(
+        at_once,
+        key=lambda f: (_FOLLOWS.get(f.subject, 0), f.level is not Level.CRITICAL, f.t_s),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +102,7 @@ class Situation:
     in_air: bool = False
     """Flying, and neither at take-off nor landing, where contact with the ground shakes it."""
     mode: str = ""
+    sysid: int = 0
 
 
 class Detector(Protocol):

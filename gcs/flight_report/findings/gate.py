@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from gcs.flight_report.facts import Decision, Fact, LogLine, Machine
 from gcs.flight_report.findings.finding import Check, Finding, Level, Result, Situation
+from gcs.report import ConditionItem
 
 MAX_FINDINGS = 200
 _SOURCE = "the gate's own record"
@@ -32,7 +33,10 @@ LEVELS = {
     "LAND": Level.CRITICAL,
     "TERMINATE": Level.CRITICAL,
 }
-_CONDITION = re.compile(r"^(CAUTION|HOLD|RETURN|LAND|TERMINATE): ([a-z_]+)(?:: (.*))?$", re.DOTALL)
+_CONDITION = re.compile(
+    r"^(?:vehicle (\d+): )?(CAUTION|HOLD|RETURN|LAND|TERMINATE): ([a-z_]+)(?:: (.*))?$", re.DOTALL
+)
+"""A line of the log; of one vehicle among several it begins with its number."""
 CONDITIONS = {
     "recorder_failed": "the record could not be written",
     "battery_low": "the battery was low",
@@ -62,6 +66,8 @@ class GateDetector:
     accepted: int = 0
     seen: bool = False
     stood: Machine | None = None
+    standing: dict[str, str] | None = None
+    """Conditions and their severities, as the machine told them last; None: it tells none."""
 
     def handle(self, fact: Fact, now: Situation) -> None:
         match fact:
@@ -72,11 +78,13 @@ class GateDetector:
                 if now.armed and event in EVENTS and not again:
                     level, title = EVENTS[event]
                     self._found(level, now.t_s, title, f"the gate went to {fact.state}")
+                if fact.conditions is not None:
+                    self._conditions(fact.conditions, now)
             case Decision():
                 self.seen = True
                 self._decision(fact, now)
-            case LogLine(_, node, text) if node == _NODE:
-                self._condition(text, now)
+            case LogLine(_, node, text) if node == _NODE and self.standing is None:
+                self._log_line(text, now)
             case _:
                 pass
 
@@ -91,11 +99,24 @@ class GateDetector:
             title = f"{fact.word} #{fact.request_id} {_ending(fact.outcome)}"
             self._found(Level.WARNING, now.t_s, title, fact.sentence, "request")
 
-    def _condition(self, text: str, now: Situation) -> None:
+    def _conditions(self, conditions: tuple[ConditionItem, ...], now: Situation) -> None:
+        before = self.standing or {}
+        self.standing = {each.name: each.severity for each in conditions}
+        for each in conditions:
+            if before.get(each.name) != each.severity:
+                self._condition(each.severity, each.name, each.text, now)
+
+    def _log_line(self, text: str, now: Situation) -> None:
         found = _CONDITION.match(text)
         if found is None:
             return
-        severity, condition, why = found.groups()
+        vehicle, severity, condition, why = found.groups()
+        if vehicle is None or int(vehicle) == now.sysid:
+            self._condition(severity, condition, why, now)
+
+    def _condition(self, severity: str, condition: str, why: str | None, now: Situation) -> None:
+        if severity not in LEVELS:
+            return
         level = LEVELS[severity] if now.armed else Level.NOTE
         title = CONDITIONS.get(condition, condition.replace("_", " "))
         self._found(level, now.t_s, f"the gate called {severity}: {title}", why or condition)

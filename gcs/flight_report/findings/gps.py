@@ -46,8 +46,8 @@ class GpsDetector:
             self.lost_fix_type = fact.fix_type
         self.no_fix.update(now.t_s, lost)
         if fixed:
-            self.hdop.update(now.t_s, fact.hdop)
-            self.satellites.update(now.t_s, fact.satellites)
+            self.hdop.update(now.t_s, fact.hdop, now.autopilot)
+            self.satellites.update(now.t_s, fact.satellites, now.autopilot)
 
     def _other(self, now: Situation) -> None:
         # Where nothing at all was told, the link was silent, and not the receiver.
@@ -59,8 +59,8 @@ class GpsDetector:
     def result(self, now: Situation) -> Result:
         result = Result()
         self._fix(result)
-        self.hdop.result(result)
-        self.satellites.result(result)
+        self.hdop.result(result, now.autopilot)
+        self.satellites.result(result, now.autopilot)
         return result
 
     def _fix(self, result: Result) -> None:

@@ -14,11 +14,26 @@ from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Res
 from gcs.flight_report.findings.spells import Spells, Worst
 from gcs.flight_report.number_format import clock
 
-LEANT = Limit(60.0, "deg", "FD_FAIL_R and FD_FAIL_P of a PX4 1.14: its failure detector acts")
+LEANT = {
+    "px4": Limit(60.0, "deg", "FD_FAIL_R and FD_FAIL_P of a PX4 1.14: its failure detector acts"),
+    "ardupilot": Limit(
+        60.0, "deg", "this project's own choice: twice ATC_ANGLE_MAX of an ArduCopter 4.7"
+    ),
+}
 
-BATTERY_LOW = Limit(15.0, "%", "BAT_LOW_THR of a PX4 1.14")
-BATTERY_CRITICAL = Limit(7.0, "%", "BAT_CRIT_THR of a PX4 1.14")
-EMPTY_CELL = Limit(3.6, "V", "BAT1_V_EMPTY of a PX4 1.14, a cell under load")
+_POLICY = "of this project's default policy, as an ArduCopter has no limit in percent"
+BATTERY_LOW = {
+    "px4": Limit(15.0, "%", "BAT_LOW_THR of a PX4 1.14"),
+    "ardupilot": Limit(15.0, "%", f"low_pct {_POLICY}"),
+}
+BATTERY_CRITICAL = {
+    "px4": Limit(7.0, "%", "BAT_CRIT_THR of a PX4 1.14"),
+    "ardupilot": Limit(7.0, "%", f"critical_pct {_POLICY}"),
+}
+EMPTY_CELL = {
+    "px4": Limit(3.6, "V", "BAT1_V_EMPTY of a PX4 1.14, a cell under load"),
+    "ardupilot": Limit(3.5, "V", "BATT_LOW_VOLT of an ArduCopter 4.7, 10.5 V of three cells"),
+}
 
 REJECTED = {
     "px4": Limit(1.0, "", "MAVLink, ESTIMATOR_STATUS: above 1 a measurement is rejected"),
@@ -27,9 +42,15 @@ REJECTED = {
 
 _LOGS = "ArduPilot wiki, Diagnosing problems using Logs"
 HDOP_GOOD = Limit(1.5, "", _LOGS)
-HDOP_BAD = Limit(2.0, "", _LOGS)
+HDOP_BAD = {
+    "px4": Limit(2.5, "", "EKF2_REQ_PDOP of a PX4 1.14; HDOP is a part of it"),
+    "ardupilot": Limit(2.0, "", _LOGS),
+}
 SATELLITES_GOOD = Limit(12, "", _LOGS)
-SATELLITES_NEEDED = Limit(6, "", "EKF2_REQ_NSATS of a PX4 1.14")
+SATELLITES_NEEDED = {
+    "px4": Limit(6, "", "EKF2_REQ_NSATS of a PX4 1.14"),
+    "ardupilot": Limit(6, "", "EK3_GPS_CHECK of an ArduCopter 4.7 (the number is from memory)"),
+}
 
 LOSS = Limit(5.0, "%", "this project's own choice")
 
@@ -61,6 +82,7 @@ class Row:
     detail: str
     measured: str
     low_is_bad: bool = False
+    mild: bool = False
 
     def of(self, autopilot: str) -> Limits:
         if isinstance(self.limits, Limits):
@@ -90,7 +112,10 @@ def _estimator(ratio: str) -> Row:
 TILT = Row(
     "attitude",
     "Roll and pitch",
-    Limits(((Level.CRITICAL, LEANT),), f"below {LEANT.value:g} degrees", LEANT.source),
+    {
+        kind: Limits(((Level.CRITICAL, limit),), f"below {limit.value:g} degrees", limit.source)
+        for kind, limit in LEANT.items()
+    },
     "the vehicle leant by more than {limit:g} degrees",
     "up to {worst:.0f} degrees at {at}; {spells}",
     "up to {worst:.0f} degrees",
@@ -98,11 +123,14 @@ TILT = Row(
 BATTERY_LEFT = Row(
     "battery",
     "Battery left",
-    Limits(
-        ((Level.CRITICAL, BATTERY_CRITICAL), (Level.WARNING, BATTERY_LOW)),
-        f"low below {BATTERY_LOW.value:g} %, critical below {BATTERY_CRITICAL.value:g} %",
-        f"{BATTERY_LOW.source}, {BATTERY_CRITICAL.source}",
-    ),
+    {
+        kind: Limits(
+            ((Level.CRITICAL, BATTERY_CRITICAL[kind]), (Level.WARNING, low)),
+            f"low below {low.value:g} %, critical below {BATTERY_CRITICAL[kind].value:g} %",
+            f"{low.source}; {BATTERY_CRITICAL[kind].source}",
+        )
+        for kind, low in BATTERY_LOW.items()
+    },
     "the battery fell below {limit:g} %",
     "down to {worst:.0f} %",
     "down to {worst:.0f} %",
@@ -112,11 +140,10 @@ _CELLS = "down to {worst:.2f} V, {a_cell:.2f} V a cell of {cells}"
 VOLTAGE = Row(
     "battery",
     "Voltage",
-    Limits(
-        ((Level.WARNING, EMPTY_CELL),),
-        f"at least {EMPTY_CELL.value:g} V a cell",
-        EMPTY_CELL.source,
-    ),
+    {
+        kind: Limits(((Level.WARNING, low),), f"at least {low.value:g} V a cell", low.source)
+        for kind, low in EMPTY_CELL.items()
+    },
     "the battery's cells fell below {limit:g} V",
     _CELLS + "; {spells}",
     _CELLS,
@@ -126,29 +153,46 @@ RATIOS = tuple(map(_estimator, ("velocity", "position", "height", "compass")))
 DILUTION = Row(
     "gps",
     "HDOP",
-    Limits(
-        ((Level.WARNING, HDOP_BAD),),
-        f"good below {HDOP_GOOD.value:g}, bad above {HDOP_BAD.value:g}",
-        HDOP_BAD.source,
-        HDOP_GOOD,
-    ),
+    {
+        "px4": Limits(
+            ((Level.WARNING, HDOP_BAD["px4"]),),
+            f"bad above {HDOP_BAD['px4'].value:g}",
+            HDOP_BAD["px4"].source,
+        ),
+        "ardupilot": Limits(
+            ((Level.WARNING, HDOP_BAD["ardupilot"]),),
+            f"good below {HDOP_GOOD.value:g}, bad above {HDOP_BAD['ardupilot'].value:g}",
+            HDOP_BAD["ardupilot"].source,
+            HDOP_GOOD,
+        ),
+    },
     "the GPS position was imprecise: HDOP above {limit:g}",
     "up to {worst:.2f} at {at}; {spells}",
     "up to {worst:.2f}",
+    mild=True,
 )
 SATELLITES = Row(
     "gps",
     "Satellites",
-    Limits(
-        ((Level.WARNING, SATELLITES_NEEDED),),
-        f"{SATELLITES_GOOD.value:g} and more are good, {SATELLITES_NEEDED.value:g} needed",
-        f"{SATELLITES_GOOD.source}; {SATELLITES_NEEDED.source}",
-        SATELLITES_GOOD,
-    ),
+    {
+        "px4": Limits(
+            ((Level.WARNING, SATELLITES_NEEDED["px4"]),),
+            f"at least {SATELLITES_NEEDED['px4'].value:g}",
+            SATELLITES_NEEDED["px4"].source,
+        ),
+        "ardupilot": Limits(
+            ((Level.WARNING, SATELLITES_NEEDED["ardupilot"]),),
+            f"{SATELLITES_GOOD.value:g} and more are good, "
+            f"{SATELLITES_NEEDED['ardupilot'].value:g} needed",
+            f"{SATELLITES_GOOD.source}; {SATELLITES_NEEDED['ardupilot'].source}",
+            SATELLITES_GOOD,
+        ),
+    },
     "fewer than {limit:g} satellites",
     "down to {worst:.0f} at {at}; {spells}",
     "at least {worst:.0f}",
     low_is_bad=True,
+    mild=True,
 )
 LOST_MESSAGES = Row(
     "link",
@@ -157,6 +201,7 @@ LOST_MESSAGES = Row(
     "more than {limit:g} % of the vehicle's messages were lost",
     "up to {worst:.0f} % at {at}; {spells}",
     "up to {worst:.1f} % lost",
+    mild=True,
 )
 VIBRATION = Row(
     "vibration",
@@ -217,7 +262,15 @@ class Held:
                 words |= {"limit": limit.value, "unit": limit.unit, "spells": spells.words}
                 title, detail = row.title.format(**words), row.detail.format(**words)
                 result.findings.append(
-                    Finding(row.subject, level, spells.first_s, title, detail, source=limit.source)
+                    Finding(
+                        row.subject,
+                        level,
+                        spells.first_s,
+                        title,
+                        detail,
+                        source=limit.source,
+                        mild=row.mild and level is Level.WARNING,
+                    )
                 )
         check = Check(row.subject, row.name, measured, limits.told, limits.source, level)
         result.checks.append(check)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import radians
 from typing import Any
 
+from gcs.gate.states import LandedState
 from gcs.logfile.columns.layout import Records
 from gcs.logfile.imports.flight import Told
 from gcs.logfile.imports.vehicle import ReportedVehicle
@@ -16,7 +17,9 @@ from gcs.wire.ids import ModeFlag
 INFO = 2
 """LogEvent.level of a text, which has no severity in such a log."""
 _EVENT_ARMED, _EVENT_DISARMED = 10, 11
-"""EV.Id (LogEvent of ArduPilot's AP_Logger.h)."""
+_EVENT_AUTO_ARMED, _EVENT_LANDED, _EVENT_NOT_LANDED = 15, 18, 28
+"""EV.Id (LogEvent of ArduPilot's AP_Logger.h).  A log that begins when the vehicle is armed
+(LOG_DISARMED 0) has no event of that, and the next ones imply it."""
 
 
 def told(tables: dict[str, Records]) -> list[Told]:
@@ -44,8 +47,12 @@ def told(tables: dict[str, Records]) -> list[Told]:
         return iter(())
 
     def event(row: Any, now_ns: int) -> Iterator[Any]:
-        if row[0] in (_EVENT_ARMED, _EVENT_DISARMED):
-            return armed((row[0] == _EVENT_ARMED,), now_ns)
+        event_id = int(row[0])
+        if event_id in (_EVENT_LANDED, _EVENT_NOT_LANDED):
+            in_air = event_id == _EVENT_NOT_LANDED
+            vehicle.landed = LandedState.IN_AIR if in_air else LandedState.ON_GROUND
+        if event_id in (_EVENT_ARMED, _EVENT_AUTO_ARMED, _EVENT_NOT_LANDED, _EVENT_DISARMED):
+            return armed((event_id != _EVENT_DISARMED,), now_ns)
         return iter(())
 
     def attitude(row: Any, now_ns: int) -> Iterator[Any]:

@@ -24,8 +24,19 @@ from gcs.flight_report.findings.failsafes import FailsafeDetector
 from gcs.flight_report.findings.finding import Level, Situation
 from gcs.flight_report.findings.gate import GateDetector
 from gcs.flight_report.findings.gps import GpsDetector
+from gcs.flight_report.findings.limits import (
+    BATTERY_LEFT,
+    DILUTION,
+    RATIOS,
+    SATELLITES,
+    TILT,
+    VIBRATION,
+    VOLTAGE,
+    Row,
+)
 from gcs.flight_report.findings.link import LinkDetector
 from gcs.flight_report.findings.vibration import VibrationDetector
+from gcs.report import ConditionItem
 from tests.unit.flight_report.facts_in_time import check, flying, found, levels
 
 UNDISTURBED = Status(True, "OFFBOARD", "IN_AIR", 230.0, 0.0)
@@ -123,21 +134,35 @@ class TestGps:
         assert check(result, "GPS fix").level is Level.NOTE
 
     @pytest.mark.parametrize(
-        ("hdop", "level"),
-        [(1.5, Level.OK), (1.51, Level.NOTE), (2.0, Level.NOTE), (2.01, Level.WARNING)],
+        ("autopilot", "hdop", "level"),
+        [
+            ("ardupilot", 1.5, Level.OK),
+            ("ardupilot", 1.51, Level.NOTE),
+            ("ardupilot", 2.0, Level.NOTE),
+            ("ardupilot", 2.01, Level.WARNING),
+            ("px4", 2.5, Level.OK),
+            ("px4", 2.51, Level.WARNING),
+        ],
     )
-    def test_dilution(self, hdop: float, level: Level) -> None:
-        result = found(GpsDetector(), [(0.0, Gps(3, 14, hdop, None))])
+    def test_dilution(self, autopilot: str, hdop: float, level: Level) -> None:
+        # ArduPilot wiki; EKF2_REQ_PDOP is 2.5 in px4_1_14_params.json.
+        result = found(GpsDetector(), [(0.0, Gps(3, 14, hdop, None))], flying(autopilot))
         assert check(result, "HDOP").level is level
         assert len(result.findings) == (level is Level.WARNING)
 
     @pytest.mark.parametrize(
-        ("satellites", "level"),
-        [(12, Level.OK), (11, Level.NOTE), (6, Level.NOTE), (5, Level.WARNING)],
+        ("autopilot", "satellites", "level"),
+        [
+            ("ardupilot", 12, Level.OK),
+            ("ardupilot", 11, Level.NOTE),
+            ("ardupilot", 5, Level.WARNING),
+            ("px4", 6, Level.OK),
+            ("px4", 5, Level.WARNING),
+        ],
     )
-    def test_satellites(self, satellites: int, level: Level) -> None:
+    def test_satellites(self, autopilot: str, satellites: int, level: Level) -> None:
         # EKF2_REQ_NSATS is 6 in px4_1_14_params.json.
-        result = found(GpsDetector(), [(0.0, Gps(3, satellites, 0.8, None))])
+        result = found(GpsDetector(), [(0.0, Gps(3, satellites, 0.8, None))], flying(autopilot))
         assert check(result, "Satellites").level is level
 
 
@@ -362,6 +387,15 @@ class TestFailsafes:
         assert "AUTO.RTL" not in finding.detail
 
 
+@pytest.mark.parametrize(
+    "row", [TILT, BATTERY_LEFT, VOLTAGE, *RATIOS, DILUTION, SATELLITES, VIBRATION]
+)
+def test_no_limit_of_one_autopilot_is_cited_for_the_other(row: Row) -> None:
+    assert "PX4" not in row.of("ardupilot").source
+    sources = {limit.source for _, limit in row.of("px4").bands} | {row.of("px4").source}
+    assert not [source for source in sources if "Ardu" in source]
+
+
 class TestGate:
     @staticmethod
     def decision(phase: str, outcome: str, code: str = "", sentence: str = "") -> Decision:
@@ -389,6 +423,35 @@ class TestGate:
         assert finding.title == "the gate called HOLD: the GPS was lost"
         assert finding.detail == "no fix, 0 satellites"
         assert finding.level is Level.WARNING
+
+    def test_of_several_vehicles_a_line_names_its_own(self) -> None:
+        lines = [
+            LogLine(3, "state_and_safety", f"vehicle {n}: CAUTION: too_close: 5 m") for n in (1, 2)
+        ]
+        now = flying()
+        now.sysid = 2
+        (finding,) = found(GateDetector(), [(6.0, line) for line in lines], now).findings
+        assert finding.title == "the gate called CAUTION: the vehicle came too close to another one"
+
+    def test_conditions_of_the_machine_are_told_once_while_they_stand(self) -> None:
+        def machine(severity: str) -> Machine:
+            standing = (ConditionItem("too_close", severity, "5 m"),) if severity else ()
+            return Machine("MOVING", "reminder", "OURS", severity or "NOMINAL", None, standing)
+
+        line = LogLine(3, "state_and_safety", "CAUTION: too_close: 5 m")
+        facts: list[tuple[float, Fact]] = [
+            (1.0, machine("")),
+            (2.0, line),
+            *((t, machine("CAUTION")) for t in (2.0, 3.0)),
+            *((t, machine("HOLD")) for t in (4.0, 5.0)),
+            (6.0, machine("")),
+            (7.0, machine("CAUTION")),
+        ]
+        assert levels(found(GateDetector(), facts)) == [
+            (2.0, Level.NOTE),
+            (4.0, Level.WARNING),
+            (7.0, Level.NOTE),
+        ]
 
     @pytest.mark.parametrize(
         "text", ["No longer HOLD: gps_lost", "Current State: HOLDING", "HOLD", "goto: aborted: x"]

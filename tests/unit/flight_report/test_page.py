@@ -249,9 +249,9 @@ class TestContent:
     def flight(self, tmp_path: Path) -> Flight:
         return scanned(tmp_path, a_flight_that_loses_gps(), 125 * MS)
 
-    def test_the_first_trouble_stands_before_everything_else(self, flight: Flight) -> None:
+    def test_the_main_trouble_stands_before_everything_else(self, flight: Flight) -> None:
         text = Elements(page(flight)).text
-        assert "What went wrong first" in text
+        assert "What went wrong" in text
         assert text.index("the GPS lost its fix") < text.index("highest")
         assert "later the vehicle's failsafe acted" in text
 
@@ -285,10 +285,10 @@ class TestContent:
         values = [value for value in heading.lines[0].values if value is not None]
         assert max(values) - min(values) == pytest.approx(2.0, abs=0.2)
 
-    def test_json_has_the_first_trouble(self, flight: Flight) -> None:
+    def test_json_has_the_main_trouble(self, flight: Flight) -> None:
         (vehicle,) = json.loads(report_json(flight))["vehicles"]
-        assert vehicle["first_trouble"]["title"] == "the GPS lost its fix"
-        assert vehicle["first_trouble"]["level"] == "critical"
+        assert vehicle["main_trouble"]["title"] == "the GPS lost its fix"
+        assert vehicle["main_trouble"]["level"] == "critical"
         assert {check["name"] for check in vehicle["checks"]} >= {"HDOP", "Vibration", "Silence"}
 
 

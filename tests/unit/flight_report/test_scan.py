@@ -25,7 +25,7 @@ from gcs.flight_report.render import page
 from gcs.flight_report.scan import scan
 from gcs.flight_report.summary import (
     consequences,
-    first_trouble,
+    main_trouble,
     what_happened,
     what_went_wrong,
 )
@@ -34,12 +34,14 @@ from gcs.mcap_file.errors import BadRecordError
 from gcs.record import ros1
 from gcs.report import (
     AttachmentItem,
+    ConditionItem,
     DecisionItem,
     Direction,
     FenceItem,
     FenceShape,
     FrameItem,
     FsaItem,
+    GeodeticItem,
     LogEvent,
     PointEnu,
     PoseItem,
@@ -131,7 +133,7 @@ class TestFlight:
 
     def test_what_went_wrong_first_and_then(self, flight: Flight) -> None:
         vehicle = vehicle_of(flight)
-        first = first_trouble(vehicle)
+        first = main_trouble(vehicle)
         assert first is not None
         assert first.title == "the GPS lost its fix"
         assert [then.title for then in consequences(vehicle, first)] == [
@@ -332,12 +334,14 @@ class TestLogLine:
 
 
 def test_a_gate_condition_reaches_the_findings(tmp_path: Path) -> None:
+    lost = ConditionItem("gps_lost", "HOLD", "no fix, 0 satellites")
     items: list[RecordItem] = [
         heartbeat(),
         status(armed=True, landed="IN_AIR"),
         FsaItem(1, "MOVING", 3, "HOVERING", "goto", "OURS", "NOMINAL", None),
-        LogEvent(START_NS, 3, "state_and_safety", "HOLD: gps_lost: no fix, 0 satellites"),
-        FsaItem(1, "HOLDING", 13, "MOVING", "must hold", "OURS", "HOLD", None),
+        LogEvent(START_NS, 3, "state_and_safety", "vehicle 1: HOLD: gps_lost: no fix"),
+        FsaItem(1, "HOLDING", 13, "MOVING", "must hold", "OURS", "HOLD", None, (lost,)),
+        FsaItem(1, "HOLDING", 13, "HOLDING", "reminder", "OURS", "HOLD", None, (lost,)),
     ]
     vehicle = vehicle_of(scanned(tmp_path, items))
     assert [f.title for f in vehicle.went_wrong] == ["the gate called HOLD: the GPS was lost"]
@@ -354,9 +358,77 @@ def test_at_one_time_the_cause_stands_before_what_follows(tmp_path: Path) -> Non
         "the gate braked: it would have come out of the fence",
         "goto #4 was aborted",
     ]
-    first = first_trouble(vehicle)
+    first = main_trouble(vehicle)
     assert first is not None
     assert [later.title for later in consequences(vehicle, first)] == ["goto #4 was aborted"]
+
+
+class TestFlightsByHeight:
+    """Of a vehicle that does not say whether it is in the air, as that of quad_2015.tlog."""
+
+    @staticmethod
+    def flown(tmp_path: Path, heights_m: Iterable[float]) -> VehicleFlight:
+        """Half a second a height; armed but for the first and the last."""
+        heights = list(heights_m)
+        items: list[RecordItem] = [heartbeat(3)]
+        for number, up_m in enumerate(heights):
+            armed = 0 < number < len(heights) - 1
+            items.append(PoseItem(1, (0.0, 0.0, -up_m), (0.0, 0.0, 0.0), UPRIGHT))
+            items.append(status(armed=armed, landed="UNDEFINED"))
+        return vehicle_of(scanned(tmp_path, items, 250 * MS))
+
+    def test_one_that_never_rises_has_not_flown(self, tmp_path: Path) -> None:
+        totals = self.flown(tmp_path, [0.0, 0.0, 0.2, 0.4, 0.2, 0.0, 0.0]).totals
+        assert (totals.take_offs, totals.flying_s) == (0, 0.0)
+        assert totals.armed_s > 0.0
+
+    def test_a_hop_before_it_is_disarmed_is_no_flight_of_its_own(self, tmp_path: Path) -> None:
+        up_m = [0.0, 0.0, 0.7, 5.0, 5.0, 0.4, 0.1, 0.1, 0.6, 0.1, 0.0]
+        totals = self.flown(tmp_path, up_m).totals
+        assert totals.take_offs == 1
+        assert totals.landed_s is not None
+
+    def test_each_arming_may_be_a_flight(self, tmp_path: Path) -> None:
+        items: list[RecordItem] = [heartbeat(3)]
+        for up_m in (0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 3.0, 0.0):
+            items.append(PoseItem(1, (0.0, 0.0, -up_m), (0.0, 0.0, 0.0), UPRIGHT))
+            items.append(status(armed=len(items) % 8 != 2, landed="UNDEFINED"))
+        assert vehicle_of(scanned(tmp_path, items, 500 * MS)).totals.take_offs == 2
+
+
+class TestARecordThatBeginsInTheAir:
+    @staticmethod
+    def flown(tmp_path: Path, alt_rel_m: float | None, *, lands: bool) -> VehicleFlight:
+        """At 30, then 35 m above the local origin; the ground is at 20 m."""
+        items: list[RecordItem] = [heartbeat(), status(armed=True, landed="IN_AIR")]
+        ups_m = (30.0, 30.0, 35.0, 35.0, *((25.0, 20.0, 20.0) if lands else ()))
+        for up_m in ups_m:
+            if alt_rel_m is not None:
+                items.append(GeodeticItem(1, 47.0, 8.0, 500.0, alt_rel_m + up_m - 30.0))
+            items.append(PoseItem(1, (0.0, 0.0, -up_m), (0.0, 0.0, 0.0), UPRIGHT))
+            items.append(status(armed=True, landed="IN_AIR" if up_m > 20.0 else "ON_GROUND"))
+        return vehicle_of(scanned(tmp_path, items, 250 * MS))
+
+    @pytest.mark.parametrize(
+        ("alt_rel_m", "lands", "highest_m", "counted_from"),
+        [
+            (10.0, False, 15.0, "home"),
+            (None, True, 15.0, "where it landed"),
+            (None, False, 5.0, "where the record begins"),
+        ],
+    )
+    def test_what_its_height_counts_from(
+        self,
+        tmp_path: Path,
+        alt_rel_m: float | None,
+        lands: bool,
+        highest_m: float,
+        counted_from: str,
+    ) -> None:
+        totals = self.flown(tmp_path, alt_rel_m, lands=lands).totals
+        assert totals.began_in_air
+        assert totals.max_up_m == pytest.approx(highest_m)
+        assert totals.up_from == counted_from
 
 
 class TestWhatTheVehicleSaid:

@@ -16,6 +16,7 @@ from mcap.reader import make_reader
 from mcap_ros1.decoder import DecoderFactory
 from pymavlink.DFReader import DFReader_binary
 
+from gcs.logfile.imports.dataflash_vehicle import told as dataflash_told
 from tests.sample_files import elsewhere
 from tests.shares import examples
 from tests.unit.cli.command_line import gcs as run_gcs
@@ -229,3 +230,14 @@ def test_a_damaged_log_is_read_as_far_as_it_goes_or_refused(
 
 
 _LOGS: dict[Personality, bytes] = {}
+
+
+def test_a_dataflash_log_that_begins_armed_tells_so_by_what_happens_then() -> None:
+    """As an ArduCopter 4.7 writes it with LOG_DISARMED 0: no ARM, and no event of the arming."""
+    events = [(15, True, "UNDEFINED"), (28, True, "IN_AIR"), (18, True, "ON_GROUND")]
+    told = dataflash_told({"EV": np.zeros(3, [("Id", "u1")])})
+    (events_told,) = (each for each in told if each.table == "EV")
+    for number, armed, landed in (*events, (11, False, "ON_GROUND")):
+        list(events_told.tell((number,), 0))
+        vehicle = events_told.vehicle
+        assert (vehicle.armed, vehicle.landed.name) == (armed, landed)
