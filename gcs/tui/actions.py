@@ -247,6 +247,11 @@ class KeyActions(LeavingApp):
         self._connection.send(self.scene.talk.preflight())
         self.query_one("#preflight").display = True
 
+    def action_items(self) -> None:
+        """The mission panel, and back; a tall screen always has it."""
+        self.screen.toggle_class("-mission")
+        self.call_after_refresh(self.redraw)
+
     def action_help(self) -> None:
         self.query_one("#help").display = True
 

@@ -31,6 +31,7 @@ from gcs.tui.panels import (
     fsa_panel,
     height_panel,
     map_panel,
+    mission_panel,
     vehicle_panel,
 )
 from gcs.tui.panels.graphs import Graphs
@@ -41,6 +42,7 @@ REDRAW_S = 0.1
 STREAM_S = 0.1
 SMALL_ROWS = 34
 WIDE_COLUMNS = 150
+TALL_ROWS = 50
 GOAL_PANELS = ("#goals", "#ahead", "#map", "#height")
 FOLDED_AFTER_S = 2.0
 
@@ -139,6 +141,7 @@ class FlyApp(KeyActions):
             with Vertical(id="side"):
                 yield Panel(lambda _c, _r: fsa_panel.draw(scene), "fsa", "state")
                 yield Panel(lambda _c, _r: vehicle_panel.draw(scene), "vehicle", "vehicle")
+                yield Panel(lambda *size: mission_panel.draw(scene, *size), "mission", "mission")
             with Vertical(id="wide"):
                 yield Panel(graphs.draw, "graphs", "last ten minutes")
                 yield Panel(
@@ -191,6 +194,7 @@ class FlyApp(KeyActions):
     def on_resize(self, event: Resize) -> None:
         self.screen.set_class(event.size.height < SMALL_ROWS, "-small")
         self.screen.set_class(event.size.width >= WIDE_COLUMNS, "-wide")
+        self.screen.set_class(event.size.height >= TALL_ROWS, "-tall")
 
     def on_map_panel_clicked(self, clicked: MapPanel.Clicked) -> None:
         self.click_map(clicked.column, clicked.row)

@@ -85,6 +85,7 @@ SECTIONS: Final[tuple[tuple[str, tuple[Key, ...]], ...]] = (
         (
             Key(("colon",), ":", "words", "a line with any word; Tab, ↑, Esc", "words"),
             Key(("P",), "P", "preflight", "before a take-off: what fails, what mends it"),
+            Key(("I",), "I", "items", "mission: verdict, items, progress"),
             Key(("n",), "n", "acknowledge", "acknowledge the alarms"),
             Key(("o",), "o", "request('station_take')", "take over from another operator"),
             Key(("plus", "equals_sign"), "+", "zoom(-1)", "map: closer"),

@@ -19,6 +19,7 @@ from gcs.tui.alarms import Alarms
 from gcs.tui.flight_numbers import FlightNumbers
 from gcs.tui.keyboard import PendingGoal, VelocityKeys
 from gcs.tui.verdict_ahead import TypedLine, VerdictAhead
+from gcs.tui.view import others
 from gcs.tui.wind import Wind, wind_of
 
 TRAIL_POINTS = 800
@@ -66,7 +67,10 @@ class Scene:
     last_move: ipc.StateEvent | None = None
     answer: Answer = field(default_factory=Answer)
     progress: ipc.ProgressEvent | None = None
-    path_enu: list[ipc.Vec3] = field(default_factory=list)  # of the mission on board
+    mission: ipc.MissionPath = field(default_factory=lambda: ipc.MissionPath([]))  # on board
+    mission_begun: bool = False  # it was flown, in part at least
+    mission_said: Answer = field(default_factory=Answer)  # to the last request about a mission
+    own_zones: list[ipc.FenceShape] = field(default_factory=list)  # its own, that are not `zones`
     other_goal: ipc.OperatorGoal | None = None  # of the operator who is in control, if not this one
     decisions: deque[Decision] = field(default_factory=lambda: deque(maxlen=DECISIONS))
     zoom: int = 0
@@ -75,6 +79,7 @@ class Scene:
     wind: Wind | None = None
     fence_on: bool = True
     _standstill: Standstill = field(default_factory=Standstill)
+    _on_board: list[ipc.FenceShape] = field(default_factory=list)
     _up: bool = False
     _key_since_refusal: bool = True
     heard_vehicle: bool = False
@@ -145,12 +150,14 @@ class Scene:
                 self.zones = event.fence
             case ipc.Fences(zones):
                 self.zones = zones
+                self.own_zones = others(self._on_board, zones)
             case ipc.Snapshot():
                 self._note_control(before, event)
                 self.heard_vehicle = self.heard_vehicle or bool(event.vehicle)
                 self._forget_old_answer()
                 self._leave_trail(event.pos_enu)
                 self.numbers.seen(event)
+                self.mission_begun |= event.state == State.FLYING_MISSION.name
                 if stands := self._standstill.news(event):
                     self._show_answer(stands, COMPLETE)
             case ipc.StateEvent():
@@ -159,8 +166,11 @@ class Scene:
                 self.typed_ahead.outdate()
             case ipc.History():
                 self._note_history(event)
-            case ipc.MissionPath(points_enu):
-                self.path_enu = points_enu
+            case ipc.MissionPath():
+                self.mission_begun = self.mission_begun and event.items == self.mission.items
+                self.mission = event
+            case ipc.VehicleFence(zones):
+                self._on_board, self.own_zones = zones, others(zones, self.zones)
             case ipc.OperatorGoal():
                 self.other_goal = None if event.client == self.talk.number else event
             case ipc.MessageEvent():
@@ -169,6 +179,7 @@ class Scene:
                 label = _label(event, tracked)
                 line = event_text.verdict_line(label, event)
                 self._show_answer(line, event.outcome, _refused_words(label, event))
+                self._note_mission(event.word)
             case ipc.EndingEvent():
                 self.progress = None
                 if tracked is not None and tracked.completed:
@@ -176,6 +187,7 @@ class Scene:
                 line = self._standstill.outcome(_label(event, tracked), event, self.snapshot)
                 if not self._says_it_is_taken(event):
                     self._show_answer(line, event.ended)
+                    self._note_mission(event.word)
             case ipc.OperationList(_, operations):
                 self._note_operations(operations)
             case ipc.Operation() if event.client != self.talk.number:
@@ -199,6 +211,11 @@ class Scene:
         elif self.answer.kind == REFUSED and not self._key_since_refusal:
             return
         self.answer = Answer(refused or line, kind, self.now_ns)
+
+    def _note_mission(self, word: str) -> None:
+        if word.startswith("mission_"):
+            last = self.decisions[-1]
+            self.mission_said = Answer(last.text, last.kind, last.time_ns)
 
     def _forget_old_answer(self) -> None:
         """What is under way, or refused and perhaps not read yet, is not forgotten."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from gcs import ipc
@@ -11,6 +11,8 @@ from gcs.tui.braille import Point
 
 HALF_SPANS_M = (2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0)
 MARGIN = 1.15
+SAME_M = 1.0
+"""Zones are the same where their edges are no farther apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,3 +75,17 @@ def outline(zone: ipc.FenceShape) -> list[tuple[float, float]]:
             (east + zone.radius_m * math.sin(a), north + zone.radius_m * math.cos(a)) for a in turns
         ]
     return [*zone.corners_en, *zone.corners_en[:1]]
+
+
+def others(
+    zones: Sequence[ipc.FenceShape], known: Sequence[ipc.FenceShape]
+) -> list[ipc.FenceShape]:
+    """Those zones that are not among the known ones, as seen from above."""
+    return [zone for zone in zones if not any(_same(zone, each) for each in known)]
+
+
+def _same(one: ipc.FenceShape, other: ipc.FenceShape) -> bool:
+    edge, points = outline(one), outline(other)
+    if one.inclusion != other.inclusion or len(edge) != len(points):
+        return False
+    return all(min(math.dist(p, q) for q in points) < SAME_M for p in edge)

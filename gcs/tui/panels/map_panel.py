@@ -20,6 +20,8 @@ REFUSED = "✗"
 """The pending goal that the gate would refuse."""
 OFF_EVERY = 5
 """Of five dots one: a fence that is switched off."""
+OWN_EVERY = 3
+"""The fence that the vehicle keeps by itself, where it is not the policy's."""
 SMALL_FENCE_M = 30.0
 """A fence no wider than this is shown whole."""
 
@@ -31,17 +33,19 @@ def draw(scene: Scene, columns: int, rows: int) -> Text:
     canvas = Canvas(columns, rows - 1)
     view = view_of(scene, columns, rows)
     _grid(canvas, view)
+    for zone in scene.own_zones:
+        style = look.OWN_FENCE if zone.inclusion else look.NO_FLY
+        canvas.path([view.dots(e, n) for e, n in outline(zone)], style, every=OWN_EVERY)
     for zone in scene.zones:
         style = look.FENCE if zone.inclusion else look.NO_FLY
         every = (1 if zone.inclusion else 2) if scene.fence_on else OFF_EVERY
         canvas.path([view.dots(e, n) for e, n in outline(zone)], style, every=every)
-    canvas.path([view.dots(e, n) for e, n, _ in scene.path_enu], look.MISSION, every=2)
+    canvas.path([view.dots(e, n) for e, n, _ in scene.mission.points_enu], look.MISSION, every=2)
     canvas.path([view.dots(e, n) for e, n, _ in scene.trail], look.TRAIL)
     _markers(canvas, view, scene)
     _scale(canvas, view)
-    return Text.assemble(
-        canvas.render(), "\n", _legend(columns, mission=bool(scene.path_enu)), end="", no_wrap=True
-    )
+    legend = _legend(columns, mission=bool(scene.mission.points_enu), own=bool(scene.own_zones))
+    return Text.assemble(canvas.render(), "\n", legend, end="", no_wrap=True)
 
 
 def arrow(yaw_deg: float) -> str:
@@ -69,21 +73,22 @@ def view_of(scene: Scene, columns: int, rows: int) -> View:
         points += [point[:2] for point in known if point is not None]
         centre = seen.home_enu[:2] if seen.home_enu is not None else centre
     points += _small_fence(scene)
-    points += [point[:2] for point in scene.path_enu]
+    points += [point[:2] for point in scene.mission.points_enu]
     fitting = fit(centre, points, width, height, scene.zoom)
     middle_en = (centre[0] + scene.pan_en[0], centre[1] + scene.pan_en[1])
     return replace(fitting, centre_en=middle_en)
 
 
 def _small_fence(scene: Scene) -> list[tuple[float, float]]:
-    """The corners to be seen of a fence that fits on the map without making all else tiny."""
-    edge = [point for zone in scene.zones if zone.inclusion for point in outline(zone)]
-    if not edge:
-        return []
-    easts, norths = zip(*edge, strict=True)
-    corners = [(min(easts), min(norths)), (max(easts), max(norths))]
-    widest_m = max(corners[1][0] - corners[0][0], corners[1][1] - corners[0][1])
-    return corners if widest_m <= SMALL_FENCE_M else []
+    """The corners to be seen of each fence that fits on the map without making all else tiny."""
+    shown = []
+    for zone in (*scene.zones, *scene.own_zones):
+        if zone.inclusion and (edge := outline(zone)):
+            easts, norths = zip(*edge, strict=True)
+            corners = [(min(easts), min(norths)), (max(easts), max(norths))]
+            if max(max(easts) - min(easts), max(norths) - min(norths)) <= SMALL_FENCE_M:
+                shown += corners
+    return shown
 
 
 def _grid(canvas: Canvas, view: View) -> None:
@@ -130,7 +135,7 @@ def _scale(canvas: Canvas, view: View) -> None:
     canvas.text(canvas.columns - 1, canvas.rows // 2, "E", look.DIM)
 
 
-def _legend(columns: int, *, mission: bool) -> Text:
+def _legend(columns: int, *, mission: bool, own: bool) -> Text:
     parts = (
         ("↑", look.VEHICLE, "vehicle"),
         (PENDING, look.PENDING, "pending"),
@@ -139,6 +144,7 @@ def _legend(columns: int, *, mission: bool) -> Text:
         *([("┄", look.MISSION, "mission")] if mission else []),
         ("─", look.FENCE, "fence"),
         ("╌", look.NO_FLY, "no-fly"),
+        *([("┄", look.OWN_FENCE, "its own")] if own else []),
     )
     legend = Text(" ", end="", no_wrap=True)
     for char, style, name in parts:

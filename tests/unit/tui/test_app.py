@@ -303,6 +303,35 @@ def test_a_transfer_is_shown_until_its_last_step() -> None:
     flown(script)
 
 
+@pytest.mark.parametrize(
+    ("size", "before", "after"),
+    [((80, 24), "pos", "mission:"), ((120, 40), "TAKING_OFF", "mission:")],
+)
+def test_a_key_puts_the_mission_in_the_place_of_what_is_less_needed(
+    size: tuple[int, int], before: str, after: str
+) -> None:
+    async def script(app: FlyApp, _station: ListeningStation, pilot: Pilot[None]) -> None:
+        await drawn(app, pilot)
+        assert (before in screen_text(app), after in screen_text(app)) == (True, False)
+        await pilot.press("I")
+        await drawn(app, pilot)
+        assert (before in screen_text(app), after in screen_text(app)) == (False, True)
+        await pilot.press("I")
+        await drawn(app, pilot)
+        assert (before in screen_text(app), after in screen_text(app)) == (True, False)
+
+    flown(script, size)
+
+
+def test_a_tall_screen_always_has_the_mission() -> None:
+    async def script(app: FlyApp, _station: ListeningStation, pilot: Pilot[None]) -> None:
+        await drawn(app, pilot)
+        assert "mission: none" in screen_text(app)
+        assert "HOVERING" in screen_text(app)
+
+    flown(script, (200, 60))
+
+
 def test_an_outcome_is_not_shown_for_ever() -> None:
     async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
         await pilot.press("m")

@@ -15,7 +15,14 @@ from gcs.tui import flight_numbers, look
 from gcs.tui.braille import Canvas, clip
 from gcs.tui.keyboard import PendingGoal
 from gcs.tui.keymap import DEFAULT
-from gcs.tui.panels import decisions_panel, fsa_panel, height_panel, map_panel, vehicle_panel
+from gcs.tui.panels import (
+    decisions_panel,
+    fsa_panel,
+    height_panel,
+    map_panel,
+    mission_panel,
+    vehicle_panel,
+)
 from gcs.tui.panels.frame_panels import footer, header
 from gcs.tui.panels.graphs import Graphs
 from gcs.tui.scene import Scene
@@ -339,6 +346,68 @@ def test_the_path_of_the_mission_is_drawn_and_gone_with_it() -> None:
     assert "mission" in map_panel.draw(scene, 60, 20).plain.splitlines()[-1]
     scene.update(ipc.MissionPath([]))
     assert path_dots(scene, style=look.MISSION) == 0
+
+
+SQUARE = ipc.MissionPath(
+    [(0.0, 0.0, 5.0), (10.0, 0.0, 5.0)],
+    [
+        ipc.MissionItem(0, "NAV_TAKEOFF", 5.0, "home"),
+        ipc.MissionItem(1, "DO_CHANGE_SPEED"),
+        *(ipc.MissionItem(n, "NAV_WAYPOINT", 512.5, "sea") for n in range(2, 60)),
+    ],
+)
+
+
+def mission_rows(scene: Scene, rows: int = 12) -> list[str]:
+    return mission_panel.draw(scene, 33, rows).plain.splitlines()
+
+
+def test_the_mission_panel_says_what_is_on_board_how_far_it_is_and_what_comes() -> None:
+    scene = scene_at((0.0, 0.0, 2.0))
+    assert mission_rows(scene)[0] == "mission: none that was verified"
+    scene.update(SQUARE)
+    assert mission_rows(scene)[:4] == [
+        "mission: 60 items, verified",
+        "   0 takeoff             5 m",
+        "   1 change speed        ",
+        "   2 waypoint            512.5 m amsl",
+    ]
+    assert scene.snapshot is not None
+    flying = msgspec.structs.replace(scene.snapshot, state="FLYING_MISSION", mission_seq=2)
+    scene.update(flying)
+    assert [row[:5] for row in mission_rows(scene)[1:4]] == ["✓  1 ", "▶  2 ", "   3 "]
+    scene.update(msgspec.structs.replace(flying, state="HOLDING", mission_seq=59))
+    shown = mission_rows(scene)
+    assert shown[-1].startswith("■ 59 waypoint")  # the last one, where the window ends
+    assert len(shown) == 12
+    scene.update(ipc.MissionPath([], [], "another mission is on board than was verified"))
+    assert "another mission is on board" in mission_rows(scene)[1]
+
+
+def test_the_mission_panel_shows_a_transfer_and_the_last_verdict() -> None:
+    scene = scene_at((0.0, 0.0, 2.0))
+    scene.update(ipc.ProgressEvent(9, "uploading", 3, 6, "items"))
+    assert "█████░░░░░ uploading 3/6" in mission_rows(scene)
+    scene.update(ipc.EndingEvent(9, "mission_upload", "complete", "", "6 items are on board"))
+    assert mission_rows(scene)[1] == "mission upload: complete: 6 items"
+    scene.update(ipc.VerdictEvent(10, "mission_start", "refused", "OUTSIDE_FENCE", "350 m out"))
+    scene.update(ipc.VerdictEvent(11, "goto", "accepted"))
+    assert "refused" in "".join(mission_rows(scene)[1:3])
+
+
+def test_the_fence_on_board_is_drawn_where_it_is_not_the_policy_s() -> None:
+    scene = scene_at((0.0, 0.0, 2.0))
+    yard = [(-8.0, -8.0), (8.0, -8.0), (8.0, 8.0), (-8.0, 8.0)]
+    scene.update(ipc.VehicleFence([ipc.FenceShape("yard", True, corners_en=yard)]))
+    assert path_dots(scene, style=look.OWN_FENCE) > 10
+    assert "its own" in map_panel.draw(scene, 90, 20).plain.splitlines()[-1]
+    turned = [(x + 0.1, y) for x, y in [*yard[1:], yard[0]]]
+    scene.update(ipc.Fences([ipc.FenceShape("policy", True, corners_en=turned)]))
+    assert path_dots(scene, style=look.OWN_FENCE) == 0
+    hole = [(2.0, 2.0), (6.0, 2.0), (6.0, 6.0), (2.0, 6.0)]
+    scene.update(ipc.VehicleFence([ipc.FenceShape("hole", False, corners_en=hole)]))
+    scene.pending = PendingGoal((8.0, 8.0, 2.0))
+    assert path_dots(scene, style=look.NO_FLY) > 10
 
 
 def test_whoever_joins_sees_the_way_that_was_flown_before() -> None:
