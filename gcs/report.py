@@ -103,6 +103,15 @@ class GeodeticItem(msgspec.Struct, frozen=True):
     alt_rel_m: float
 
 
+class OriginItem(msgspec.Struct, frozen=True):
+    """GPS_GLOBAL_ORIGIN: where the local frame of vehicle `sysid` begins; degrees, metres."""
+
+    sysid: int
+    lat_deg: float
+    lon_deg: float
+    alt_amsl_m: float
+
+
 class StatusItem(msgspec.Struct, frozen=True):
     """Battery, mode, landed state and link quality: once a second, and when a state changes."""
 
@@ -125,11 +134,15 @@ class SetpointItem(msgspec.Struct, frozen=True):
 
 
 class StopItem(msgspec.Struct, frozen=True):
-    """Where the vehicle would come to rest if it were told to stop now, as the gate predicts it."""
+    """Where the vehicle would come to rest if it were told to stop now, as the gate predicts it.
+
+    `allowed_m_s`: so fast the law of pace lets it fly on its way to a goal; None: on no such way.
+    """
 
     sysid: int
     pos_ned: Vec3
     stop_ned: Vec3
+    allowed_m_s: float | None = None
 
 
 class ParamItem(msgspec.Struct, frozen=True):
@@ -287,6 +300,7 @@ RecordItem: TypeAlias = (
     | InputItem
     | PoseItem
     | GeodeticItem
+    | OriginItem
     | StatusItem
     | SetpointItem
     | StopItem

@@ -18,26 +18,14 @@ from gcs.flight_report.vehicle_scan import VehicleScan
 from gcs.gate.policy.parse import DEFAULT
 from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Schema
 from gcs.mcap_file.reader import Condition, Progress
-from gcs.record import ros1
-from gcs.report import Direction, FenceShape
+from gcs.record import fence_topic, ros1
+from gcs.report import Direction
 
-_FENCE = "/gate/fence"
 _POLICY = "policy.toml"
 _MAX_VEHICLES = 250
 VEHICLE_NODE = "vehicle"
 _SEVERITIES = {5: 2, 4: 3, 3: 4, 2: 6, 1: 7}
 """Level of a log line -> MAV_SEVERITY."""
-
-
-class _FenceMessage(msgspec.Struct):
-    """`/gate/fence`; a margin that is not there is the policy's."""
-
-    zones: list[FenceShape]
-    margin_h_m: float | None = None
-    margin_v_m: float | None = None
-
-
-_decode_fence = msgspec.json.Decoder(_FenceMessage).decode
 
 
 def scan(path: Path, progress: Progress | None = None) -> Flight:
@@ -80,7 +68,7 @@ class Scan:
         self._schemas[schema.id] = schema.data
 
     def channel(self, channel: Channel) -> None:
-        if channel.topic == _FENCE:
+        if channel.topic == fence_topic.FENCE_TOPIC:
             self._fence_channel = channel.id
         self._says_texts |= channel.topic.endswith("/STATUSTEXT")
         source = source_of(channel.topic, self._schemas.get(channel.schema_id, b""))
@@ -164,11 +152,11 @@ class Scan:
 
     def _fence(self, data: bytes) -> None:
         try:
-            found = _decode_fence(data)
+            found = fence_topic.read(data)
         except msgspec.MsgspecError:
             self.flight.damaged += 1
             return
-        self.flight.fence = Fence(found.zones, found.margin_h_m or 0.0, found.margin_v_m or 0.0)
+        self.flight.fence = Fence(found.zones, found.margin_h_m, found.margin_v_m)
 
 
 def _is_vehicle(flight: VehicleFlight) -> bool:

@@ -28,6 +28,7 @@ from gcs.report import (
     FenceShape,
     FsaItem,
     LogEvent,
+    OriginItem,
     PointEnu,
 )
 from gcs.session.effects import Effect, Emit, Record
@@ -231,6 +232,11 @@ def reminder(gate: Gate, sysid: int) -> list[Effect]:
         conditions=conditions(gate),
     )
     return [Record(item)]
+
+
+def origin(sysid: int, at: Origin | None) -> list[Effect]:
+    """Where the vehicle's local frame begins; nothing while it is not known."""
+    return [] if at is None else [Record(OriginItem(sysid, at.lat_deg, at.lon_deg, at.alt_amsl_m))]
 
 
 def fence(zones: Iterable[Zone], origin: Origin | None, policy: Policy) -> list[Effect]:

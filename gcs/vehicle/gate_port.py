@@ -6,6 +6,7 @@ reaches the vehicle's motion on any other path.
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from gcs.frames import Vec3
@@ -150,11 +151,14 @@ class GatePort:
         """Where the gate predicts that the vehicle comes to rest; in flight only."""
         if telemetry.pos_ned is None or self.gate.state in NOT_FLYING:
             return []
-        path, name = self.gate.memory.path, telemetry.autopilot.name
+        memory, name = self.gate.memory, telemetry.autopilot.name
         (_, stop_ned), *_ = ways_to_stop(
-            telemetry.pos_ned, telemetry.v_ned, path, self.policy, name
+            telemetry.pos_ned, telemetry.v_ned, memory.path, self.policy, name
         )
-        return [Record(StopItem(telemetry.sysid, telemetry.pos_ned, stop_ned))]
+        paced = memory.paced
+        on_its_way = paced is not None and paced.goal_ned == self.gate.active_goal_ned
+        allowed_m_s = math.hypot(*paced.v_ned) if paced is not None and on_its_way else None
+        return [Record(StopItem(telemetry.sysid, telemetry.pos_ned, stop_ned, allowed_m_s))]
 
     # -------------------------------------------------------------------------- the fence
 
@@ -174,6 +178,7 @@ class GatePort:
             fence = announcements.fence(verifier.zones, telemetry.origin, self.policy)
         return [
             GateInput(inputs.VerifierChanged(verifier)),
+            *announcements.origin(telemetry.sysid, telemetry.origin),
             *fence,
             *([] if telemetry.pos_ned is None else self._breached(telemetry.pos_ned)),
         ]

@@ -71,4 +71,4 @@ def _foxglove_parts() -> list[Deriver]:
     from gcs.record.derived.words import Words
 
     names = FrameNames()
-    return [BodyFrames(names), Paths(), Places(names), GateScene(), PlanScene(), Words()]
+    return [BodyFrames(names), Paths(names), Places(names), GateScene(names), PlanScene(), Words()]

@@ -1,9 +1,11 @@
 """Where each vehicle is and what it looks like: /tf_static, /vehicle/N/{tf,model,odometry}.
 
 Frames: `map` (ENU) -> `local_ned` static, `local_ned` -> `base_link_frd` dynamic with MAVLink's
-values unchanged, `base_link_frd` -> `base_link` static.  A second vehicle's body frames carry
-its number.  The transforms of each vehicle have a topic of their own, because after a seek a
-viewer reads only the last message of a topic.  Quaternions are (w, x, y, z).
+values unchanged, `base_link_frd` -> `base_link` static.  A second vehicle's frames carry its
+number: `map_2` is where its own local frame begins, as far from `map` as the two origins are
+(GPS_GLOBAL_ORIGIN), and what it says of places is drawn there.  The transforms of each vehicle
+have a topic of their own, because after a seek a viewer reads only the last message of a topic.
+Quaternions are (w, x, y, z).
 """
 
 from __future__ import annotations
@@ -28,9 +30,9 @@ from foxglove.messages import (
 
 from gcs.frames import Vec3, enu_from_ned
 from gcs.mcap_file.writer import Channel
-from gcs.record.derived.drawing import NO_TURN, channel, color, stamp
+from gcs.record.derived.drawing import NO_TURN, channel, color, east_north, stamp
 from gcs.record.topics import Deriver, Grid, Out
-from gcs.report import FsaItem, GeodeticItem, PoseItem, Quat, RecordItem, SetpointItem
+from gcs.report import FsaItem, GeodeticItem, OriginItem, PoseItem, Quat, RecordItem, SetpointItem
 
 TF_HZ = 25.0
 ODOMETRY_HZ = 5.0
@@ -50,38 +52,57 @@ _REAR = color((0.85, 0.87, 0.9), 0.9)
 
 
 @dataclass(frozen=True, slots=True)
-class BodyNames:
-    """The frames of one vehicle: x forward, y right, z down; and x forward, y left, z up."""
+class VehicleFrames:
+    """The frames of one vehicle, without a suffix or with `_N`."""
 
-    frd: str
-    flu: str
+    suffix: str = ""
+
+    @property
+    def enu(self) -> str:
+        """East, north, up of its local origin."""
+        return f"map{self.suffix}"
+
+    @property
+    def ned(self) -> str:
+        """North, east, down of its local origin."""
+        return f"local_ned{self.suffix}"
+
+    @property
+    def frd(self) -> str:
+        """Of the body: x forward, y right, z down."""
+        return f"base_link_frd{self.suffix}"
+
+    @property
+    def flu(self) -> str:
+        """Of the body: x forward, y left, z up."""
+        return f"base_link{self.suffix}"
 
 
 class FrameNames:
     """The frames of every vehicle: the first one that is heard of has the plain names."""
 
     def __init__(self) -> None:
-        self._names: dict[int, BodyNames] = {}
+        self._names: dict[int, VehicleFrames] = {}
 
     def __contains__(self, sysid: int) -> bool:
         return sysid in self._names
 
-    def of(self, sysid: int) -> BodyNames:
+    def of(self, sysid: int) -> VehicleFrames:
         """Given when first asked for."""
         known = self._names.get(sysid)
         if known is None:
             suffix = f"_{sysid}" if self._names else ""
-            known = self._names[sysid] = BodyNames(f"base_link_frd{suffix}", f"base_link{suffix}")
+            known = self._names[sysid] = VehicleFrames(suffix)
         return known
 
-    def all(self) -> list[BodyNames]:
+    def all(self) -> dict[int, VehicleFrames]:
         """Of every vehicle; before one is heard of, the names that the first will have."""
-        return list(self._names.values()) or [BodyNames("base_link_frd", "base_link")]
+        return self._names or {0: VehicleFrames()}
 
 
 @dataclass(slots=True)
 class _Vehicle:
-    names: BodyNames
+    names: VehicleFrames
     tf: Channel
     odometry: Channel
     tf_grid: Grid = field(default_factory=lambda: Grid(TF_HZ))
@@ -91,11 +112,12 @@ class _Vehicle:
 class BodyFrames(Deriver):
     """Transforms at 25 Hz, odometry at 5 Hz; the static ones and the model once, at the start."""
 
-    takes: ClassVar = frozenset({FsaItem, PoseItem, GeodeticItem, SetpointItem})
+    takes: ClassVar = frozenset({FsaItem, PoseItem, GeodeticItem, SetpointItem, OriginItem})
 
     def __init__(self, names: FrameNames) -> None:
         self._names = names
         self._vehicles: dict[int, _Vehicle] = {}
+        self._origins: dict[int, OriginItem] = {}
         self._static = channel("/tf_static", FrameTransforms.get_schema())
 
     def start(self, now_ns: int) -> list[Out]:
@@ -108,6 +130,10 @@ class BodyFrames(Deriver):
                 if all(map(isfinite, (*item.pos_ned, *item.v_ned, *item.q_ned_from_frd))):
                     outs += _pose(vehicle, item, now_ns)
                 return outs
+            case OriginItem(sysid) if self._origins.get(sysid) != item:
+                outs, _ = self._vehicle(sysid, now_ns)
+                self._origins[sysid] = item
+                return [*outs, self._statics(now_ns)]
             case FsaItem(sysid) | GeodeticItem(sysid) | SetpointItem(sysid):
                 return self._vehicle(sysid, now_ns)[0]
             case _:
@@ -118,9 +144,9 @@ class BodyFrames(Deriver):
         known = self._vehicles.get(sysid)
         if known is not None:
             return [], known
-        before = self._names.all()
+        before = len(self._names.all())
         names = self._names.of(sysid)
-        outs = [] if names in before else [self._statics(now_ns)]
+        outs = [self._statics(now_ns)] if len(self._names.all()) > before else []
         base = f"/vehicle/{sysid}"
         known = self._vehicles[sysid] = _Vehicle(
             names,
@@ -133,20 +159,39 @@ class BodyFrames(Deriver):
 
     def _statics(self, now_ns: int) -> Out:
         """All static transforms in one message: only the last one is read after a seek."""
-        turns = [("map", "local_ned", NED_IN_MAP)]
-        turns += [(body.frd, body.flu, FLU_IN_FRD) for body in self._names.all()]
-        transforms = [
-            FrameTransform(
-                timestamp=stamp(now_ns),
-                parent_frame_id=parent,
-                child_frame_id=child,
-                translation=Vector3(),
-                rotation=_quaternion(rotation),
-            )
-            for parent, child, rotation in turns
-        ]
+        transforms = []
+        first = next(iter(self._names.all()))
+        for sysid, names in self._names.all().items():
+            if sysid != first:
+                offset_enu = self._offset_enu(sysid, first)
+                transforms.append(_static("map", names.enu, NO_TURN, now_ns, offset_enu))
+            transforms += [
+                _static(names.enu, names.ned, _quaternion(NED_IN_MAP), now_ns),
+                _static(names.frd, names.flu, _quaternion(FLU_IN_FRD), now_ns),
+            ]
         message = FrameTransforms(transforms=transforms).encode()
         return Out(self._static, message, latch="static")
+
+    def _offset_enu(self, sysid: int, first: int) -> Vec3:
+        """From the first one's origin to this one's; none while one of them is not known."""
+        here, there = self._origins.get(first), self._origins.get(sysid)
+        if here is None or there is None:
+            return (0.0, 0.0, 0.0)
+        east, north = east_north((here.lat_deg, here.lon_deg), (there.lat_deg, there.lon_deg))
+        return (east, north, there.alt_amsl_m - here.alt_amsl_m)
+
+
+def _static(
+    parent: str, child: str, turn: Quaternion, now_ns: int, offset: Vec3 = (0.0, 0.0, 0.0)
+) -> FrameTransform:
+    x, y, z = offset
+    return FrameTransform(
+        timestamp=stamp(now_ns),
+        parent_frame_id=parent,
+        child_frame_id=child,
+        translation=Vector3(x=x, y=y, z=z),
+        rotation=turn,
+    )
 
 
 def _pose(vehicle: _Vehicle, item: PoseItem, now_ns: int) -> list[Out]:
@@ -155,7 +200,7 @@ def _pose(vehicle: _Vehicle, item: PoseItem, now_ns: int) -> list[Out]:
         north, east, down = item.pos_ned
         body = FrameTransform(
             timestamp=stamp(now_ns),
-            parent_frame_id="local_ned",
+            parent_frame_id=vehicle.names.ned,
             child_frame_id=vehicle.names.frd,
             translation=Vector3(x=north, y=east, z=down),
             rotation=_quaternion(item.q_ned_from_frd),
@@ -166,13 +211,13 @@ def _pose(vehicle: _Vehicle, item: PoseItem, now_ns: int) -> list[Out]:
     return outs
 
 
-def _odometry(names: BodyNames, item: PoseItem, now_ns: int) -> Odometry:
-    """The pose in `map`, and the velocity along the body's axes; the turn rates are not known."""
+def _odometry(names: VehicleFrames, item: PoseItem, now_ns: int) -> Odometry:
+    """The pose from its own origin, and the velocity along the body's axes; no turn rates."""
     east, north, up = enu_from_ned(item.pos_ned)
     forward, right, down = turned(conjugate(item.q_ned_from_frd), item.v_ned)
     return Odometry(
         timestamp=stamp(now_ns),
-        frame_id="map",
+        frame_id=names.enu,
         body_frame_id=names.flu,
         pose=Pose(
             position=Vector3(x=east, y=north, z=up),

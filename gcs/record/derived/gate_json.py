@@ -12,6 +12,7 @@ from typing import ClassVar
 import msgspec
 
 from gcs.record.derived.json_topic import JsonTopic, encode
+from gcs.record.fence_topic import FENCE_TOPIC, Fence, written
 from gcs.record.topics import INPUT_TOPIC, Deriver, Grid, Out
 from gcs.report import DecisionItem, FenceItem, InputItem, RecordItem
 
@@ -26,22 +27,29 @@ DECIMALS = 3
 DECIMALS_OF_DEGREES = 7
 
 
-class RequestRow(msgspec.Struct, frozen=True, omit_defaults=True):
-    """One request: when it was asked (seconds of the record), the verdict, the ending, and why."""
+class RequestRow(msgspec.Struct, frozen=True):
+    """One request: when it was asked (seconds of the record), the verdict, the ending, and why.
+
+    Every row has every key: a viewer's table has the columns of the first row.
+    """
 
     at_s: float
-    vehicle: int
     request: str
     verdict: str
-    ending: str = ""
-    reason: str = ""
-    source: str = ""
+    ending: str
+    reason: str
+    vehicle: int
+    source: str
 
 
 class Requests(msgspec.Struct, frozen=True):
     """The table of requests, the newest first."""
 
     rows: list[RequestRow]
+
+
+NOTHING_ASKED = RequestRow(0.0, "nothing yet", "", "", "", 0, "")
+"""A viewer shows an error for a table without rows."""
 
 
 class GateJson(Deriver):
@@ -52,7 +60,7 @@ class GateJson(Deriver):
     def __init__(self) -> None:
         self._decision = JsonTopic("/gate/decision", "gate.Decision", DecisionItem)
         self._requests = JsonTopic("/gate/requests", "gate.Requests", Requests)
-        self._fence = JsonTopic("/gate/fence", "gate.Fence", FenceItem)
+        self._fence = JsonTopic(FENCE_TOPIC, "gate.Fence", Fence)
         self._input = JsonTopic(INPUT_TOPIC, "session.Input", InputItem)
         self._rows: dict[tuple[int, int], RequestRow] = {}
         self._grid = Grid(REQUESTS_HZ)
@@ -68,7 +76,7 @@ class GateJson(Deriver):
             case InputItem():
                 return [Out(self._input.channel, encode(item))]
             case FenceItem():
-                return [self._fence.out(item, latch="fence")]
+                return [self._fence.out(written(item), latch="fence")]
             case DecisionItem():
                 self._enter(item, now_ns)
                 outs = [self._decision.out(_rounded(item))]
@@ -89,7 +97,7 @@ class GateJson(Deriver):
         if item.phase == "verdict":
             at_s = round((now_ns - self._start_ns) / 1e9, 1)
             row = RequestRow(
-                at_s, item.vehicle, request_text(item), item.outcome, "", reason, item.source
+                at_s, request_text(item), item.outcome, "", reason, item.vehicle, item.source
             )
         elif key in self._rows:
             row = msgspec.structs.replace(self._rows[key], ending=item.outcome, reason=reason)
@@ -105,7 +113,8 @@ class GateJson(Deriver):
 
     def _table(self) -> Out:
         self._untold = False
-        return self._requests.out(Requests(list(self._rows.values())[::-1]), latch="requests")
+        rows = list(self._rows.values())[::-1] or [NOTHING_ASKED]
+        return self._requests.out(Requests(rows), latch="requests")
 
 
 def request_text(item: DecisionItem) -> str:

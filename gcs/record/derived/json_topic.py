@@ -1,7 +1,8 @@
 """A topic of JSON messages with a schema, both made of the fields of structs.
 
 A value that is not known is left out rather than null, and so is an empty text: viewers read
-`type` as one plain type.
+`type` as one plain type.  They take no arrays of arrays either, so a topic that would have one
+cannot be made.
 """
 
 from __future__ import annotations
@@ -79,8 +80,15 @@ def _schema(kind: inspect.Type) -> dict[str, Json]:
         case inspect.DictType() | inspect.RawType():
             return {"type": "object", "properties": {}}
         case inspect.ListType(item_type=item) | inspect.VarTupleType(item_type=item):
-            return {"type": "array", "items": _schema(item)}
+            return _array(item)
         case inspect.TupleType(item_types):
-            return {"type": "array", "items": _schema(item_types[0])}
+            return _array(item_types[0])
         case _:
             return {"type": _TYPES[type(kind)]}
+
+
+def _array(kind: inspect.Type) -> dict[str, Json]:
+    items = _schema(kind)
+    if items["type"] == "array":
+        raise TypeError("viewers take no array of arrays")
+    return {"type": "array", "items": items}

@@ -10,6 +10,7 @@ from foxglove.messages import Pose, PosesInFrame, Vector3
 
 from gcs.frames import enu_from_ned
 from gcs.mcap_file.writer import Channel
+from gcs.record.derived.body_frames import FrameNames
 from gcs.record.derived.drawing import NO_TURN, channel, stamp
 from gcs.record.derived.trail import Trail
 from gcs.record.topics import Deriver, Out
@@ -22,6 +23,7 @@ POINTS_A_PERIOD = 200
 
 @dataclass(slots=True)
 class _Vehicle:
+    frame_id: str
     path: Channel
     trail: Trail = field(default_factory=Trail)
     changed: bool = False
@@ -33,7 +35,8 @@ class Paths(Deriver):
 
     takes: ClassVar = frozenset({PoseItem})
 
-    def __init__(self) -> None:
+    def __init__(self, names: FrameNames) -> None:
+        self._names = names
         self._vehicles: dict[int, _Vehicle] = {}
 
     def handle(self, item: RecordItem, now_ns: int) -> list[Out]:
@@ -42,7 +45,7 @@ class Paths(Deriver):
         vehicle = self._vehicles.get(item.sysid)
         if vehicle is None:
             path = channel(f"/vehicle/{item.sysid}/path", PosesInFrame.get_schema())
-            vehicle = self._vehicles[item.sysid] = _Vehicle(path)
+            vehicle = self._vehicles[item.sysid] = _Vehicle(self._names.of(item.sysid).enu, path)
         vehicle.changed |= vehicle.trail.add(enu_from_ned(item.pos_ned))
         if vehicle.changed and now_ns >= vehicle.due_ns:
             return [_path(vehicle, now_ns)]
@@ -60,5 +63,5 @@ def _path(vehicle: _Vehicle, now_ns: int) -> Out:
         Pose(position=Vector3(x=east, y=north, z=up), orientation=NO_TURN)
         for east, north, up in points
     ]
-    path = PosesInFrame(timestamp=stamp(now_ns), frame_id="map", poses=poses)
+    path = PosesInFrame(timestamp=stamp(now_ns), frame_id=vehicle.frame_id, poses=poses)
     return Out(vehicle.path, path.encode(), latch="path")

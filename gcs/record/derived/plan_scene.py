@@ -11,6 +11,7 @@ from foxglove.messages import GeoJson, SceneEntity, SceneUpdate, Timestamp, Tria
 
 from gcs.frames import enu_from_ned
 from gcs.record.derived.drawing import (
+    EARTH_RADIUS_M,
     ball,
     channel,
     clear,
@@ -25,14 +26,14 @@ from gcs.record.derived.outline import Outline, corners, margin_outline, triangl
 from gcs.record.topics import Deriver, Out
 from gcs.report import FenceItem, FenceShape, MissionItem, RecordItem
 
-EARTH_RADIUS_M = 6_371_000.0
 OPEN_HEIGHT_M = 40.0
 """How far a zone without a ceiling is drawn above its floor, where no other zone is higher."""
 
 _ROUTE = (1.0, 0.8, 0.2)
 _INCLUSION = (0.2, 0.75, 0.4)
 _EXCLUSION = (0.95, 0.25, 0.2)
-_MARGIN = (0.95, 0.8, 0.3)
+_PALER = 0.55
+"""The margin is the zone's colour, so much of the way to white."""
 
 
 class PlanScene(Deriver):
@@ -59,7 +60,7 @@ class PlanScene(Deriver):
 
 
 def fence(item: FenceItem, at: Timestamp) -> SceneUpdate:
-    """Every zone as a volume: green keeps the vehicle in, red keeps it out; yellow is the margin.
+    """Every zone as a volume: green keeps the vehicle in, red keeps it out; the margin is paler.
 
     The margin's boundary is what the gate holds goals and legs to.
     """
@@ -142,10 +143,12 @@ def _zone(
     into_m = margins[1] if zone.inclusion else -margins[1]
     bottom = floor if zone.floor_up_m is None else floor + into_m
     top = ceiling if zone.ceiling_up_m is None else ceiling - into_m
+    red, green, blue = (part + (1.0 - part) * _PALER for part in rgb)
+    pale = (red, green, blue)
     if near and bottom < top:
         rings = [[(east, north, up) for east, north in near] for up in (bottom, top)]
-        lines += [line(ring, color(_MARGIN, 0.7), closed=True, pixels=1.0) for ring in rings]
-        shown.append(_walls(near, bottom, top, _MARGIN, 0.05))
+        lines += [line(ring, color(pale, 0.7), closed=True, pixels=1.0) for ring in rings]
+        shown.append(_walls(near, bottom, top, pale, 0.05))
     texts = [label((*outline[0], ceiling + 1.0), zone.name)]
     return entity(f"zone {zone.name}", at, triangles=shown, lines=lines, texts=texts)
 
@@ -170,7 +173,7 @@ def _ring(outline: Outline) -> Outline:
 
 
 def _lon_lat(origin: tuple[float, float, float], at_en: tuple[float, float]) -> list[float]:
-    """For drawing only: equirectangular about the origin, within 0.2 m at 1 km."""
+    """Equirectangular about the origin, within 0.2 m at 1 km."""
     lat_deg, lon_deg, _ = origin
     east, north = at_en
     return [

@@ -22,6 +22,7 @@ from gcs.report import (
     Quat,
     RecordItem,
     StatusItem,
+    StopItem,
 )
 
 STATE_HZ = 5.0
@@ -54,6 +55,12 @@ class Motion(msgspec.Struct, frozen=True):
         return cls(*(round(value, DECIMALS) for value in values))
 
 
+class Allowed(msgspec.Struct, frozen=True):
+    """How fast the law of pace lets it fly now; not there where it flies to no goal."""
+
+    allowed_mps: float | None
+
+
 def euler_deg(q: Quat) -> tuple[float, float, float]:
     """Roll, pitch, yaw (0..360 clockwise from north) of a body-FRD-to-NED quaternion w, x, y, z.
 
@@ -76,6 +83,7 @@ class _Vehicle:
     pose: PoseItem | None = None
     geodetic: GeodeticItem | None = None
     status: StatusItem | None = None
+    allowed: Allowed | None = None
     machine: FsaItem | None = None
     state_grid: Grid = field(default_factory=lambda: Grid(STATE_HZ))
     fsa_sent_ns: int = 0
@@ -84,7 +92,7 @@ class _Vehicle:
 class VehicleJson(Deriver):
     """The state at 5 Hz; the gate's machine on change, every second and at the end."""
 
-    takes: ClassVar = frozenset({PoseItem, GeodeticItem, StatusItem, FsaItem, ParamItem})
+    takes: ClassVar = frozenset({PoseItem, GeodeticItem, StatusItem, FsaItem, ParamItem, StopItem})
 
     def __init__(self) -> None:
         self._vehicles: dict[int, _Vehicle] = {}
@@ -95,6 +103,10 @@ class VehicleJson(Deriver):
                 vehicle = self._vehicle(sysid)
                 vehicle.pose = item
                 return _state(vehicle, now_ns)
+            case StopItem(sysid, allowed_m_s=allowed_m_s):
+                rounded = None if allowed_m_s is None else round(allowed_m_s, DECIMALS)
+                self._vehicle(sysid).allowed = Allowed(rounded)
+                return []
             case GeodeticItem(sysid):
                 self._vehicle(sysid).geodetic = item
                 return []
@@ -132,7 +144,7 @@ class VehicleJson(Deriver):
                 state=JsonTopic(
                     f"{base}/state",
                     "vehicle.State",
-                    *(Motion, GeodeticItem, StatusItem),
+                    *(Motion, GeodeticItem, StatusItem, Allowed),
                     without=("sysid", "lat_deg", "lon_deg"),
                 ),
                 fsa=JsonTopic(f"{base}/fsa", "gate.Fsa", FsaItem),
@@ -152,4 +164,4 @@ def _state(vehicle: _Vehicle, now_ns: int) -> list[Out]:
     if not vehicle.state_grid.due(now_ns):
         return []
     motion = None if vehicle.pose is None else Motion.of(vehicle.pose)
-    return [vehicle.state.out(motion, vehicle.geodetic, vehicle.status)]
+    return [vehicle.state.out(motion, vehicle.geodetic, vehicle.status, vehicle.allowed)]

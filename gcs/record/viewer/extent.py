@@ -13,6 +13,7 @@ import msgspec
 from gcs.frames import Vec3
 from gcs.mcap_file.format import Channel, Message
 from gcs.mcap_file.reader import Progress, Reading
+from gcs.record.fence_topic import FENCE_TOPIC, read
 from gcs.report import FenceItem, FenceShape
 
 EARTH_RADIUS_M = 6_371_000.0
@@ -72,7 +73,6 @@ class _State(msgspec.Struct):
 
 
 _state = msgspec.json.Decoder(_State)
-_fence = msgspec.json.Decoder(FenceItem)
 
 
 def survey(path: Path, progress: Progress | None = None) -> Survey:
@@ -88,7 +88,7 @@ def survey(path: Path, progress: Progress | None = None) -> Survey:
             topic = topics.get(record.channel_id, "")
             if _STATE.fullmatch(topic):
                 track += _places(record.data)
-            elif topic == "/gate/fence":
+            elif topic == FENCE_TOPIC:
                 fence = _fence_of(record.data) or fence
             elif topic == "/tf_static":
                 frames = record.data
@@ -141,6 +141,6 @@ def _places(data: bytes) -> list[Vec3]:
 
 def _fence_of(data: bytes) -> FenceItem | None:
     try:
-        return _fence.decode(data)
+        return read(data)
     except msgspec.DecodeError:
         return None

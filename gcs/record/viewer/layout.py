@@ -79,6 +79,9 @@ def layout(
     `suffixed` are the vehicles whose frames carry their number; without it all but the first.
     """
     template = _template()
+    kept: Purpose | Literal["imported"] = purpose
+    if purpose == "one" and "/gate/decision" not in topics:
+        kept = "imported"  # another program's log, in which nothing was decided
     numbers = _vehicles(topics)
     suffixed = suffixed or numbers[1:]
     bodies = [Body(n, f"base_link_{n}" if n in suffixed else "base_link") for n in numbers]
@@ -88,7 +91,7 @@ def layout(
         extent = _CAGE
     filler = _Filler(frozenset(topics), bodies, extent)
     panels: dict[str, Any] = {}
-    for name, title, *shown in template[purpose]["panels"]:
+    for name, title, *shown in template[kept]["panels"]:
         kind = name.split("!")[0]
         values = filler.values(kind, shown)
         if values is not None:
@@ -101,7 +104,7 @@ def layout(
         "globalVariables": {},
         "userNodes": {},
         "playbackConfig": {"speed": 1},
-        "layout": _tree(template[purpose]["tree"], panels) or "",
+        "layout": _tree(template[kept]["tree"], panels) or "",
     }
 
 

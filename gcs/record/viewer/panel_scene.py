@@ -14,22 +14,24 @@ from typing import Any, Literal
 from gcs.record.viewer.extent import Extent
 
 FOLLOW_DISTANCE_M = 30.0
-CHASE_DISTANCE_M = 9.0
-DISTANCE_PER_RADIUS = 2.2
-"""With an opening of 45 degrees a ball of radius 1 fills the height of the view at 2.6; a fence
-is flat, so nearer."""
+CHASE_DISTANCE_M = 14.0
+DISTANCE_PER_RADIUS = 2.6
+"""With an opening of 45 degrees a ball of radius 1 fills the height of the view."""
+AXIS_PER_RADIUS = 0.1
+"""Where the camera stays a vehicle is a speck: its axes show where it is."""
 ANY_ZOOM = 18
 PANEL_PIXELS = 300.0
 EQUATOR_M_PER_PIXEL = 156_543.034
 """Of a web map at zoom 0 (tiles of 256 pixels)."""
 
 _GRADIENTS = (
-    ("#f59e0bff", "#fde68aff"),
-    ("#0ea5e9ff", "#bae6fdff"),
+    ("#38bdf8ff", "#e0f2feff"),
     ("#d946efff", "#f5d0feff"),
-    ("#22c55eff", "#bbf7d0ff"),
+    ("#fb923cff", "#fed7aaff"),
+    ("#a3e635ff", "#ecfccbff"),
 )
-_COLORS = ("#f59e0b", "#0ea5e9", "#d946ef", "#22c55e")
+"""No green, red and yellow, which are fence, no-fly zones and mission."""
+_COLORS = ("#0ea5e9", "#d946ef", "#f97316", "#65a30d")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +70,9 @@ def scene(
         return None
     frames = {"frame:local_ned": {"visible": False}, "frame:map": {"visible": True}}
     for body in bodies:
-        frames[f"frame:{body.frd}"] = {"visible": False}
-        frames[f"frame:{body.frame}"] = {"visible": camera == "fit" and not fits}
+        for hidden in (body.frd, f"map_{body.sysid}", f"local_ned_{body.sysid}"):
+            frames[f"frame:{hidden}"] = {"visible": False}
+        frames[f"frame:{body.frame}"] = {"visible": camera == "fit"}
     centre, distance_m = (0.0, 0.0, 0.0), FOLLOW_DISTANCE_M
     if camera == "chase":
         distance_m = CHASE_DISTANCE_M
@@ -82,6 +85,7 @@ def scene(
         "far": max(5000, round(20 * distance_m)),
         "follow_mode": "follow-none" if fits else "follow-position",
         "follow_frame": "map" if fits else bodies[0].frame,
+        "axis": round(max(1.0, AXIS_PER_RADIUS * extent.radius_m), 1) if fits and extent else 1,
         "frames": frames,
         "drawn": drawn,
         **_grid(extent),

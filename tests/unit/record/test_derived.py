@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import pymap3d
 import pytest
 
 from gcs.frames import enu_from_ned
@@ -18,6 +19,7 @@ from gcs.report import (
     InputItem,
     LogEvent,
     MissionItem,
+    OriginItem,
     PointEnu,
     PoseItem,
     RecordItem,
@@ -102,17 +104,47 @@ def test_the_body_frame_has_mavlinks_values_unchanged(tmp_path: Path) -> None:
 
 
 def test_a_second_vehicle_has_frames_and_topics_of_its_own(tmp_path: Path) -> None:
-    path = record(tmp_path, [pose((0.0, 0.0, 0.0)), pose((5.0, 0.0, 0.0), sysid=2)])
+    """Its local frame begins where its own origin is, 0.001 degrees east of the first one's."""
+    flight: list[RecordItem] = [
+        *(pose((0.0, 0.0, 0.0)), pose((5.0, 0.0, 0.0), sysid=2)),
+        *(OriginItem(1, 47.0, 8.0, 488.0), OriginItem(2, 47.0, 8.001, 489.0)),
+    ]
+    path = record(tmp_path, flight)
     (message,) = pictures(path, "/vehicle/2/tf")
-    assert message.transforms[0].child_frame_id == "base_link_frd_2"
+    (body,) = message.transforms
+    assert (body.parent_frame_id, body.child_frame_id) == ("local_ned_2", "base_link_frd_2")
     (model,) = pictures(path, "/vehicle/2/model")
     assert model.entities[0].frame_id == "base_link_2"
     last_static = pictures(path, "/tf_static")[-1]
-    assert [t.child_frame_id for t in last_static.transforms] == [
-        "local_ned",
-        "base_link",
-        "base_link_2",
+    assert [(t.parent_frame_id, t.child_frame_id) for t in last_static.transforms] == [
+        ("map", "local_ned"),
+        ("base_link_frd", "base_link"),
+        ("map", "map_2"),
+        ("map_2", "local_ned_2"),
+        ("base_link_frd_2", "base_link_2"),
     ]
+    offset = last_static.transforms[2].translation
+    at_2 = pymap3d.geodetic2enu(47.0, 8.001, 489.0, 47.0, 8.0, 488.0)
+    assert (offset.x, offset.y, offset.z) == pytest.approx(at_2, abs=0.3)
+    (way,) = pictures(path, "/vehicle/2/path")
+    assert way.frame_id == "map_2"
+
+
+def test_json_topics_have_no_arrays_of_arrays(tmp_path: Path) -> None:
+    """A viewer's rule: it says so of the whole topic, and shows nothing of it."""
+
+    def check(schema: Any, topic: str) -> None:
+        if schema["type"] == "array":
+            assert schema["items"]["type"] != "array", topic
+            check(schema["items"], topic)
+        for inner in schema.get("properties", {}).values():
+            check(inner, topic)
+
+    schemas = summary_of(record(tmp_path, a_flight())).schemas.values()
+    found = [one for one in schemas if one.encoding == "jsonschema"]
+    assert len(found) >= 7
+    for one in found:
+        check(json.loads(one.data), one.name)
 
 
 def test_a_pose_that_is_not_finite_is_not_drawn(tmp_path: Path) -> None:
@@ -337,7 +369,7 @@ def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:
             "east_m:number north_m:number up_m:number groundspeed_mps:number climb_mps:number"
             " roll_deg:number pitch_deg:number yaw_deg:number alt_amsl_m:number alt_rel_m:number"
             " armed:boolean mode:string landed:string battery_pct:number battery_v:number"
-            " rx_hz:number lost_pct:number"
+            " rx_hz:number lost_pct:number allowed_mps:number"
         ),
     }
 

@@ -13,12 +13,13 @@ from gcs.report import (
     FenceShape,
     LogEvent,
     PointEnu,
+    PoseItem,
     RecordItem,
     SetpointItem,
     StopItem,
 )
 from tests.unit.record.flights import MS, SECOND, START_NS, decided, messages_of, record
-from tests.unit.record.viewer import fsa, pictures, pose, readings
+from tests.unit.record.viewer import UPRIGHT, fsa, pictures, pose, readings
 
 FAR = PointEnu(500.0, 0.0, 2.0)
 
@@ -98,6 +99,27 @@ def test_the_predicted_stop_is_a_ring_that_vanishes(tmp_path: Path) -> None:
     assert 0 < entity.lifetime.seconds * SECOND + entity.lifetime.nanos <= SECOND
 
 
+def test_the_stop_says_how_fast_it_is_and_how_fast_it_may_be(tmp_path: Path) -> None:
+    moving = PoseItem(1, (0.0, 0.0, -2.0), (3.0, 0.0, 0.0), UPRIGHT)
+    stops = [
+        StopItem(1, (0.0, 0.0, -2.0), (4.0, 0.0, -2.0), allowed_m_s=3.5),
+        StopItem(1, (0.0, 0.0, -2.0), (4.0, 0.0, -2.0)),
+    ]
+    path = record(tmp_path, [moving, *stops], step_ns=SECOND)
+    texts = [entity.texts[0].text for entity in drawn(path, "/vehicle/1/stop")]
+    assert texts == ["3.0 of 3.5 m/s, stop 4.0 m", "3.0 m/s, stop 4.0 m"]
+
+
+def test_a_long_reason_is_told_in_three_short_lines(tmp_path: Path) -> None:
+    words = " ".join(f"word{n}" for n in range(60))
+    refused = decided(3, "refused", goal=FAR, code="OUTSIDE_FENCE", sentence=words)
+    replaced = decided(4, "superseded", goal=FAR, code="SUPERSEDED", sentence="by goto 1 0 2")
+    path = record(tmp_path, [pose((0.0, 0.0, -2.0)), refused, replaced])
+    long, short = (entity.texts[0].text.split("\n") for entity in drawn(path, "/gate/goals"))
+    assert (len(long), max(map(len, long)) <= 40, long[-1][-1]) == (3, True, "…")
+    assert short == ["SUPERSEDED: by goto 1 0 2"]
+
+
 def test_a_vehicle_that_hovers_has_no_stop(tmp_path: Path) -> None:
     path = record(tmp_path, [StopItem(1, (0.0, 0.0, -2.0), (0.1, 0.0, -2.0))])
     assert drawn(path, "/vehicle/1/stop") == []
@@ -132,7 +154,7 @@ def test_the_margin_is_drawn_inside_an_inclusion_and_outside_an_exclusion(tmp_pa
         return [
             p
             for line in entity.lines
-            if line.color.g > 0.75 and line.color.r > 0.9
+            if line.color.b > 0.6  # paler than the boundary
             for p in line.points
         ]
 
@@ -154,7 +176,7 @@ def test_the_fence_is_a_json_topic_too(tmp_path: Path) -> None:
     zone = FenceShape("yard", True, [], (1.0, 2.0), 30.0, 0.0, 20.0)
     path = record(tmp_path, [FenceItem([zone], (47.0, 8.0, 488.0), 2.0, 0.5)])
     (found,) = readings(path, "/gate/fence")
-    assert found["zones"][0]["centre_en"] == [1.0, 2.0]
+    assert found["zones"][0]["centre"] == {"east_m": 1.0, "north_m": 2.0}
     assert (found["origin"], found["margin_h_m"], found["margin_v_m"]) == (
         [47.0, 8.0, 488.0],
         2.0,
@@ -175,15 +197,17 @@ def test_the_table_of_requests_grows_and_stands_after_any_seek(tmp_path: Path) -
         decided(3, "complete", phase="ending", sentence="Complete"),
     ]
     tables = readings(record(tmp_path, flight, step_ns=SECOND), "/gate/requests")
-    assert [len(table["rows"]) for table in tables] == [0, 1, 2, 2, 3, 3]
+    assert [len(table["rows"]) for table in tables] == [1, 1, 2, 2, 3, 3]
+    assert tables[0]["rows"][0]["request"] == "nothing yet"
     arm, newest, oldest = tables[-1]["rows"]
-    assert (arm["request"], arm["ending"], "reason" in arm) == ("arm", "complete", False)
+    assert (arm["request"], arm["ending"], arm["reason"]) == ("arm", "complete", "")
     assert newest == {
         "at_s": 2.0,
-        "vehicle": 1,
         "request": "goto 500 0 2",
         "verdict": "refused",
+        "ending": "",
         "reason": "OUTSIDE_FENCE: 350.2 m outside",
+        "vehicle": 1,
         "source": "operator",
     }
     assert (oldest["verdict"], oldest["ending"]) == ("accepted", "aborted")

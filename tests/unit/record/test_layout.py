@@ -157,14 +157,11 @@ def test_the_setpoint_is_not_joined_across_the_mission() -> None:
     assert (up["showLine"], setpoint["showLine"]) == (True, False)
 
 
-def test_three_rows_of_states_over_the_whole_width() -> None:
+def test_nine_panels_with_the_states_over_the_whole_width() -> None:
     made: Any = layout(any_flight())
+    assert len(made["configById"]) == 9
     rows = made["configById"]["StateTransitions!phase"]["paths"]
-    assert [row["value"] for row in rows] == [
-        "/vehicle/1/phase.state",
-        "/vehicle/1/phase.mode",
-        "/vehicle/1/phase.severity",
-    ]
+    assert [row["value"] for row in rows] == ["/vehicle/1/phase.state", "/vehicle/1/phase.mode"]
     assert (made["layout"]["direction"], made["layout"]["second"]) == (
         "column",
         "StateTransitions!phase",
@@ -172,11 +169,24 @@ def test_three_rows_of_states_over_the_whole_width() -> None:
 
 
 def test_a_record_without_phases_shows_the_states_as_they_were() -> None:
-    topics = {"/vehicle/1/fsa", "/vehicle/1/state", "/vehicle/1/tf"}
+    topics = {"/vehicle/1/fsa", "/vehicle/1/state", "/vehicle/1/tf", "/gate/decision"}
     made: Any = layout(topics)
     rows = [row["value"] for row in made["configById"]["StateTransitions!phase"]["paths"]]
-    assert rows == ["/vehicle/1/fsa.state", "/vehicle/1/state.mode", "/vehicle/1/fsa.severity"]
+    assert rows == ["/vehicle/1/fsa.state", "/vehicle/1/state.mode"]
+
+
+def test_the_state_is_the_gates_own_and_not_the_one_that_stood_a_while() -> None:
+    made: Any = layout(any_flight())
     assert made["configById"]["Indicator!fsa"]["path"] == "/vehicle/1/fsa.state"
+
+
+def test_an_imported_log_has_no_panels_of_a_gate() -> None:
+    leaves = ("tf", "model", "path", "location", "state", "phase")
+    made: Any = layout({"/log", *(f"/vehicle/1/{leaf}" for leaf in leaves)})
+    kinds = {name.split("!")[0] for name in made["configById"]}
+    assert kinds == {"3D", "map", "Plot", "RosOut", "StateTransitions"}
+    rows = made["configById"]["StateTransitions!phase"]["paths"]
+    assert [row["value"] for row in rows] == ["/vehicle/1/phase.mode", "/vehicle/1/phase.landed"]
 
 
 @pytest.mark.parametrize(
