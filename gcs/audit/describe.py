@@ -12,6 +12,7 @@ from gcs import ipc
 from gcs.audit.compare import LOG_TOPIC, Pair
 from gcs.audit.messages import INPUT_TOPIC, Stored
 from gcs.audit.turns import Given, RecorderTurn, Unreadable
+from gcs.record.log_line import read_log_line
 from gcs.report import Direction
 from gcs.session.inputs import (
     ClientCame,
@@ -43,8 +44,6 @@ _FRAMES: dict[int, str] = {
     Direction.SENT: "frame sent",
     Direction.REFUSED: "frame refused",
 }
-_LOG_MESSAGE, _LOG_NAME = 3, 4
-"""Field numbers of foxglove.Log (https://docs.foxglove.dev/docs/visualization/message-schemas/log)."""
 
 Fields = dict[str, str]
 
@@ -195,8 +194,8 @@ def _parts(message: Stored) -> tuple[str, Fields]:
     if message.is_garbage:
         return "garbage", {"bytes": message.raw.hex(" ")}
     if message.topic == LOG_TOPIC:
-        texts = _texts(message.data)
-        return "log", {"line": texts.get(_LOG_MESSAGE, ""), "from": texts.get(_LOG_NAME, "")}
+        _, node, line = read_log_line(message.data) or (0, "", "")
+        return "log", {"line": line, "from": node}
     try:
         tree = msgspec.json.decode(message.data)
     except (msgspec.MsgspecError, UnicodeDecodeError):
@@ -240,41 +239,3 @@ def _value(value: Any) -> str:  # whatever JSON has
 
 def _short(text: str) -> str:
     return text if len(text) <= MOST_LETTERS else f"{text[:MOST_LETTERS]}…"
-
-
-def _texts(data: bytes) -> dict[int, str]:
-    """The texts of a protobuf message by field number (https://protobuf.dev/programming-guides/
-    encoding); what is not understood is left out."""
-    texts: dict[int, str] = {}
-    at = 0
-    try:
-        while at < len(data):
-            key, at = _varint(data, at)
-            match key & 7:
-                case 0:
-                    _, at = _varint(data, at)
-                case 1:
-                    at += 8
-                case 2:
-                    length, at = _varint(data, at)
-                    texts[key >> 3] = data[at : at + length].decode(errors="replace")
-                    at += length
-                case 5:
-                    at += 4
-                case _:
-                    break
-    except IndexError:
-        pass
-    return texts
-
-
-def _varint(data: bytes, at: int) -> tuple[int, int]:
-    """Raises IndexError where the bytes end."""
-    value = shift = 0
-    while True:
-        byte = data[at]
-        at += 1
-        value |= (byte & 0x7F) << shift
-        if byte < 0x80:
-            return value, at
-        shift += 7

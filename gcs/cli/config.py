@@ -11,7 +11,7 @@ from gcs.cli import settings
 from gcs.cli.options import AS_JSON, LOG_DIR, POLICY, TIMEOUT, with_options
 from gcs.config import DEFAULT_LINK
 from gcs.exit_codes import ExitCode
-from gcs.operator.errors import ExitError
+from gcs.operator.errors import ExitError, error_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -91,14 +91,23 @@ def check(files: tuple[Path, ...]) -> None:
     if not paths:
         hint = "gcs config init writes one"
         raise ExitError(ExitCode.BAD_FILE, f"there is no {settings.NAME} here or above", hint)
+    wrong = False
     for path in paths:
-        read = settings.read(path)
-        try:
-            load_policy(read.settings.policy or "default")
-        except PolicyFileError as error:
-            text = f"{path}:{read.line('policy')}: policy: {error}"
-            raise ExitError(ExitCode.BAD_FILE, text, error.hint) from error
-        click.echo(f"{path}: in order")
+        errors = settings.errors_of(path)
+        if not errors:
+            read = settings.read(path)
+            try:
+                load_policy(read.settings.policy or "default")
+            except PolicyFileError as error:
+                text = f"{path}:{read.line('policy')}: policy: {error}"
+                errors = [ExitError(ExitCode.BAD_FILE, text, error.hint)]
+        for each in errors:
+            click.echo("\n".join(error_lines(str(each), each.hint)), err=True)
+        if not errors:
+            click.echo(f"{path}: in order")
+        wrong = wrong or bool(errors)
+    if wrong:
+        click.get_current_context().exit(ExitCode.BAD_FILE)
     settings.configured_keymap()
 
 

@@ -3,22 +3,14 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Unpack
 
 import click
 
 from gcs import request_words
 from gcs.cli import completers
-from gcs.cli.common_options import COMMON, MeetsVehicle
-from gcs.cli.options import (
-    TAKE,
-    UTF8,
-    WARNING,
-    Seconds,
-    asked_for,
-    log_level,
-    station_config,
-    typed,
-)
+from gcs.cli.common_options import COMMON, MeetsVehicle, ToVehicle, set_up
+from gcs.cli.options import TAKE, UTF8, Seconds
 from gcs.operator import line_parser
 
 EXITS = (
@@ -38,20 +30,7 @@ WAIT = click.Option(
 def _command(name: str) -> click.Command:
     word = request_words.WORD_BY_NAME[name]
 
-    def run_word(
-        links: tuple[str, ...],
-        vehicle: int | None,
-        policy: str,
-        sign_key: str,
-        log_dir: str,
-        timeout: float,
-        wait: float,
-        as_json: bool,
-        verbose: bool,
-        quiet: bool,
-        take: bool = False,
-        arguments: tuple[str, ...] = (),
-    ) -> None:
+    def run_word(arguments: tuple[str, ...] = (), **to: Unpack[ToVehicle]) -> None:
         try:
             action = line_parser.parse_arguments(word, arguments)
         except line_parser.LineError as error:
@@ -60,31 +39,10 @@ def _command(name: str) -> click.Command:
 
         from gcs.cli import oneshot_session
 
-        setup = station_config(
-            links,
-            policy,
-            log_dir,
-            name=name,
-            timeout_s=timeout,
-            vehicle=vehicle,
-            sign_key=sign_key,
-        )
         stops = all(request.word in request_words.STOPS for request in action.requests)
         placed = name not in ("abort", "hold")
-        how = oneshot_session.OneShotConfig(
-            timeout,
-            wait,
-            as_json,
-            name,
-            placed=placed,
-            anywhere=not typed("links"),
-            take=take,
-            stops=stops,
-            wanted=asked_for(),
-            min_level=log_level(WARNING, quiet=quiet, verbose=verbose),
-            quiet=quiet,
-        )
-        code = oneshot_session.run(setup, how, oneshot_session.sending(action, wait))
+        setup, how = set_up(name, name, to, placed=placed, stops=stops)
+        code = oneshot_session.run(setup, how, oneshot_session.sending(action, to["wait"]))
         click.get_current_context().exit(code)
 
     typed_here = click.Argument(["arguments"], nargs=-1, type=UTF8, metavar=word.usage)
@@ -118,42 +76,12 @@ def __getattr__(name: str) -> click.Command:
     return _command(name)
 
 
-def _status(
-    links: tuple[str, ...],
-    vehicle: int | None,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
-    timeout: float,
-    as_json: bool,
-    verbose: bool,
-    quiet: bool,
-) -> None:
+def _status(**to: Unpack[ToVehicle]) -> None:
     from gcs.cli import oneshot_session
     from gcs.cli.status import report
 
-    setup = station_config(
-        links,
-        policy,
-        log_dir,
-        name="status",
-        timeout_s=timeout,
-        vehicle=vehicle,
-        record=False,
-        sign_key=sign_key,
-    )
-    how = oneshot_session.OneShotConfig(
-        timeout,
-        0.0,
-        as_json,
-        "status",
-        cautions=True,
-        anywhere=not typed("links"),
-        wanted=asked_for(),
-        min_level=log_level(WARNING, quiet=quiet, verbose=verbose),
-        quiet=quiet,
-    )
-    code = oneshot_session.run(setup, how, partial(report, as_json=as_json))
+    setup, how = set_up("status", "status", to, record=False, cautions=True)
+    code = oneshot_session.run(setup, how, partial(report, as_json=to["as_json"]))
     click.get_current_context().exit(code)
 
 

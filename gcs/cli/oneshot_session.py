@@ -18,6 +18,8 @@ from gcs.cli.running import (
 )
 from gcs.config import ANY_STATION, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
+from gcs.gate.refusal import Code
+from gcs.gate.states import State
 from gcs.ipc import Ask
 from gcs.operator import event_text
 from gcs.operator.chosen_vehicle import ChosenVehicle
@@ -31,6 +33,8 @@ from gcs.operator.standstill import Standstill
 from gcs.request_words import REQUESTS, SendRequests
 from gcs.shell.stations import Description
 
+STARTED_IT = 1
+"""The number of the operator whose program has started the station."""
 STANDS_WAIT_S = 15.0
 """How long a stop that is complete is watched until the vehicle stands."""
 Task = Callable[[Dialogue, ProgressDisplay], ExitCode]
@@ -156,10 +160,16 @@ def _left(dialogue: Dialogue, code: int, display: ProgressDisplay) -> int:
 
 
 def sending(action: SendRequests, wait_s: float) -> Task:
-    """The task of sending these requests, after taking control if one of them needs it."""
+    """The task of sending these requests.
+
+    A station of our own takes control first if one of them needs it: each one-shot command leaves
+    the vehicle held, and the next one cannot know by whom.  In a station that runs a hold, and a
+    vehicle that somebody else flies, stay as they are until `resume` or `control` is asked for.
+    """
 
     def task(dialogue: Dialogue, display: ProgressDisplay) -> ExitCode:
-        if any(REQUESTS[request.word].needs_control for request in action.requests):
+        needs_control = any(REQUESTS[request.word].needs_control for request in action.requests)
+        if needs_control and dialogue.number == STARTED_IT:
             control = dialogue.take_control()
             if control is not None and not control.completed:
                 return control.exit_code
@@ -168,11 +178,25 @@ def sending(action: SendRequests, wait_s: float) -> Task:
             if not sent.settled:
                 display.clear()
                 click.echo(f"{sent.label}: not completed within {wait_s:g} s", err=True)
+            hint = _hint(sent, dialogue.snapshot)
+            if hint:
+                display.clear()
+                click.echo(f"  hint: {hint}", err=True)
             if sent.exit_code:
                 return sent.exit_code
         return ExitCode.DONE
 
     return task
+
+
+def _hint(sent: TrackedRequest, seen: ipc.Snapshot | None) -> str:
+    """The command that gives back the control which a refused request needs."""
+    code = "" if sent.verdict is None else sent.verdict.code
+    if seen is None or code not in (Code.HOLDING, Code.NOT_IN_CONTROL):
+        return ""
+    return {State.HOLDING.name: "gcs resume", State.EXTERNAL.name: "gcs control"}.get(
+        seen.state, ""
+    )
 
 
 def _lines(

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import click
 
-from gcs.cli.common_options import COMMON, MeetsVehicle
-from gcs.cli.options import asked_for, log_level, station_config, typed, with_options
+from gcs.cli.common_options import COMMON, MeetsVehicle, ToVehicle, set_up
+from gcs.cli.options import with_options
 from gcs.exit_codes import ExitCode
-from gcs.operator.event_text import WARNING
 
 if TYPE_CHECKING:
     from gcs import ipc
@@ -29,18 +28,7 @@ READ_S = 15.0
 
 @click.command(cls=MeetsVehicle, epilog=f"Example: gcs preflight --json\n\n{EXITS}")
 @with_options(*COMMON)
-def preflight(
-    links: tuple[str, ...],
-    vehicle: int | None,
-    policy: str,
-    sign_key: str,
-    log_dir: str,
-    timeout: float,
-    take: bool,
-    as_json: bool,
-    verbose: bool,
-    quiet: bool,
-) -> None:
+def preflight(**to: Unpack[ToVehicle]) -> None:
     """Look at everything that matters before a take-off, on the vehicle and in the station.
 
     Tells pass, caution or fail of each, and the commands that mend it.  What comes slowly is waited
@@ -48,29 +36,9 @@ def preflight(
     """
     from gcs.cli import oneshot_session
 
-    setup = station_config(
-        links,
-        policy,
-        log_dir,
-        name="preflight",
-        timeout_s=timeout,
-        vehicle=vehicle,
-        sign_key=sign_key,
-    )
-    how = oneshot_session.OneShotConfig(
-        timeout,
-        0.0,
-        as_json,
-        "preflight",
-        anywhere=not typed("links"),
-        placed=False,  # that there is no position is one of the rows
-        take=take,
-        wanted=asked_for(),
-        min_level=log_level(WARNING, quiet=quiet, verbose=verbose),
-        quiet=quiet,
-        told=False,
-    )
-    task = partial(_look, as_json=as_json, timeout_s=timeout)
+    # That there is no position is one of the rows.
+    setup, how = set_up("preflight", "preflight", to, placed=False, told=False)
+    task = partial(_look, as_json=to["as_json"], timeout_s=to["timeout"])
     click.get_current_context().exit(oneshot_session.run(setup, how, task))
 
 

@@ -79,6 +79,22 @@ def read(path: Path) -> SettingsFile:
         raise ExitError(ExitCode.BAD_FILE, f"{path}: {error.strerror}") from error
 
 
+def errors_of(path: Path) -> list[ExitError]:
+    """All that is wrong with a file; `read` tells the first of it."""
+    from gcs import toml
+    from gcs.cli.settings_file import errors_of
+
+    try:
+        read(path)
+    except ExitError as first:
+        try:
+            found = errors_of(toml.decode(path.read_bytes(), str(path)), path)
+        except (toml.TomlError, OSError):
+            found = []
+        return [ExitError(ExitCode.BAD_FILE, str(each), each.hint) for each in found] or [first]
+    return []
+
+
 def _refuse_strangers(path: Path) -> None:
     """A file in a folder above may be anybody's, and says what the gate allows."""
     if os.name != "posix" or path.stat().st_uid in (os.getuid(), ROOT):

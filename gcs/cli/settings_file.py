@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -45,7 +45,30 @@ class SettingsFile:
 def parse(text: str, path: Path) -> SettingsFile:
     """Raises TomlError: unknown keys, wrong types, what is no link, keys that are two actions'."""
     document = toml.read(text, str(path))
-    settings = document.convert(Settings, document.data)
+    return SettingsFile(_settings(document, document.data, path), document)
+
+
+def errors_of(text: str, path: Path) -> list[toml.TomlError]:
+    """What is wrong with each key by itself, and then with all together."""
+    try:
+        document = toml.read(text, str(path))
+    except toml.TomlError as error:
+        return [error]
+    keys = document.data.get("keys")
+    tables = keys if isinstance(keys, dict) else {}
+    parts = [{key: value} for key, value in document.data.items() if not (key == "keys" and tables)]
+    parts += [{"keys": {action: names}} for action, names in tables.items()]
+    found: dict[str, toml.TomlError] = {}
+    for part in (*parts, document.data):
+        try:
+            _settings(document, part, path)
+        except toml.TomlError as error:
+            found.setdefault(str(error), error)
+    return list(found.values())
+
+
+def _settings(document: toml.Document, data: Mapping[str, object], path: Path) -> Settings:
+    settings = document.convert(Settings, data)
     for number, link in enumerate(settings.links or ()):
         try:
             parse_endpoint(link)
@@ -63,8 +86,7 @@ def parse(text: str, path: Path) -> SettingsFile:
         policy = str(beside / policy)
     if log_dir is not None:
         log_dir = str(beside / log_dir)
-    settings = msgspec.structs.replace(settings, policy=policy, log_dir=log_dir)
-    return SettingsFile(settings, document)
+    return msgspec.structs.replace(settings, policy=policy, log_dir=log_dir)
 
 
 def template(link: str) -> str:

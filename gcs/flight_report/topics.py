@@ -2,16 +2,11 @@
 
 A reader is chosen once for a channel and called for each of its messages.  A message that cannot
 be read gives no fact.
-
-Of foxglove.Log, level, node and text are read here: the SDK encodes this schema and does not decode
-it.  Wire format: Protocol Buffers encoding, https://protobuf.dev/programming-guides/encoding/;
-field numbers: foxglove's Log.proto.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import msgspec
@@ -27,14 +22,12 @@ from gcs.flight_report.facts import (
 )
 from gcs.flight_report.mavlink_readers import MAVLINK_READERS, Read
 from gcs.flight_report.onboard_logs import AUTOPILOT_OF_PREFIX, onboard_reader
+from gcs.record.log_line import read_log_line
 from gcs.report import ConditionItem, PointEnu
 
 AUTOPILOT_COMPONENT = 1
 UNREADABLE = (struct.error, msgspec.MsgspecError)
 """What a reader raises for a message that is not what its topic says."""
-
-_LEVEL, _MESSAGE, _NAME = 2, 3, 4
-_FIXED_BYTES = {1: 8, 5: 4}
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,53 +178,4 @@ def _decision(data: bytes) -> list[Fact]:
 
 def _log(data: bytes) -> list[Fact]:
     line = read_log_line(data)
-    return [] if line is None else [line]
-
-
-# ------------------------------------------------------------------------------ foxglove.Log
-
-
-def read_log_line(data: bytes) -> LogLine | None:
-    """None where the bytes are no such message."""
-    level, texts = 0, {_MESSAGE: "", _NAME: ""}
-    try:
-        for number, value in _fields(data):
-            if number == _LEVEL and isinstance(value, int):
-                level = value
-            elif number in texts and isinstance(value, bytes):
-                texts[number] = value.decode("utf-8", "replace")
-    except (IndexError, ValueError):
-        return None
-    return LogLine(level, texts[_NAME], texts[_MESSAGE])
-
-
-def _fields(data: bytes) -> Iterator[tuple[int, int | bytes]]:
-    """Number and value of each field.  Raises IndexError where it breaks off, ValueError."""
-    at = 0
-    while at < len(data):
-        key, at = _varint(data, at)
-        match key & 7:
-            case 0:
-                value, at = _varint(data, at)
-                yield key >> 3, value
-            case 2:
-                length, at = _varint(data, at)
-                if at + length > len(data):
-                    raise IndexError
-                yield key >> 3, data[at : at + length]
-                at += length
-            case kind if kind in _FIXED_BYTES:
-                at += _FIXED_BYTES[kind]
-            case kind:
-                raise ValueError(kind)
-
-
-def _varint(data: bytes, at: int) -> tuple[int, int]:
-    value = 0
-    for shift in range(0, 64, 7):
-        byte = data[at]
-        at += 1
-        value |= (byte & 0x7F) << shift
-        if byte < 0x80:
-            return value, at
-    raise ValueError("varint")
+    return [] if line is None else [LogLine(*line)]

@@ -57,6 +57,7 @@ class Code(StrEnum):
     BATTERY_REACH = "BATTERY_REACH"
     OTHER_VEHICLE = "OTHER_VEHICLE"
     PREFLIGHT = "PREFLIGHT"
+    NOT_ON_BOARD = "NOT_ON_BOARD"
 
 
 @dataclass(frozen=True, slots=True)

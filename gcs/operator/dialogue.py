@@ -192,10 +192,16 @@ class Dialogue(Conversation):
 
     def look_before_flight(self) -> ipc.PreflightReport:
         """What the station knows now of everything that matters before a take-off."""
-        asked = self.preflight()
+        asked, before = self.preflight(), self.trouble
         self._connection.send(asked)
-        self.wait_until(lambda: self.preflight_answer(asked.id) is not None, START_WAIT_S)
+        self.wait_until(
+            lambda: self.preflight_answer(asked.id) is not None or self.trouble is not before,
+            START_WAIT_S,
+        )
         report = self.preflight_answer(asked.id)
+        if report is None and self.trouble is not before:
+            hint = "it may be of an older version: gcs stations end, or use that version"
+            raise ExitError(ExitCode.NOT_COMPLETED, "the running station tells no preflight", hint)
         if report is None:
             raise ExitError(ExitCode.BUG, f"the station said nothing for {START_WAIT_S:g} s")
         return report
@@ -203,11 +209,9 @@ class Dialogue(Conversation):
     def take_control(self) -> TrackedRequest | None:
         """Take control of a vehicle that flies without us; None if there is no need."""
         assert self.snapshot is not None
-        if self.snapshot.state == State.EXTERNAL.name:
-            return self.wait_settled(self.send(ipc.Ask(0, "control")))
-        if self.snapshot.state == State.HOLDING.name:
-            return self.wait_settled(self.send(ipc.Ask(0, "resume")))
-        return None
+        if self.snapshot.state != State.EXTERNAL.name:
+            return None
+        return self.wait_settled(self.send(ipc.Ask(0, "control")))
 
     def first_failure(self) -> ExitCode:
         """The exit code of the first request that was not completed, DONE if all were."""

@@ -13,6 +13,7 @@ from typing import NamedTuple, TypeAlias
 import msgspec
 
 from gcs.record import ros1
+from gcs.record.log_line import read_log_line
 from gcs.wire.fields import fields_of
 from gcs.wire.frame import Frame, split
 
@@ -103,6 +104,8 @@ def _decoder(name: str, schema: str, encoding: str, metadata: dict[str, str]) ->
         return _json_fields
     if encoding == "ros1" and schema == "mavlink/Garbage":
         return _garbage_fields
+    if schema == "foxglove.Log":
+        return _log_fields
     length = metadata.get(ros1.PAYLOAD_LENGTH_KEY, "")
     is_frame = encoding == "ros1" and schema.startswith("mavlink/")
     if is_frame and length.isdecimal() and len(length) <= 3:
@@ -119,6 +122,13 @@ def _decoder(name: str, schema: str, encoding: str, metadata: dict[str, str]) ->
         raise DecodeError(f"{name}: messages of the encoding {encoding!r} are not decoded here")
 
     return undecoded
+
+
+def _log_fields(data: bytes) -> Fields:
+    line = read_log_line(data)
+    if line is None:
+        raise DecodeError("no foxglove.Log")
+    return dict(zip(("level", "node", "text"), line, strict=True))
 
 
 def _json_fields(data: bytes) -> Fields:

@@ -271,7 +271,10 @@ class FlyApp(KeyActions):
         if self._leaving:
             self._give_back()
             return
-        sentence = f"the link process has ended (exit code {ended.exit_code}); q leaves"
+        code = ended.exit_code
+        what = "connection to the station was lost"
+        how = what if code is None else f"link process has ended (exit code {code})"
+        sentence = f"the {how}; q leaves"
         self.scene.answer = Answer(sentence.upper(), REFUSED)
         self.scene.alarms.station_lost()
         alone = [after_station_died(self.scene.snapshot)] if ended.bye is None else []

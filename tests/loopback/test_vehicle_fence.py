@@ -119,6 +119,9 @@ def test_a_cleared_mission_names_what_stays_until_that_is_cleared(
     assert told(flight, again) == "no mission is on board"
     nothing = flight.say("mission_download", path="none.plan")
     assert flight.done(nothing) == "aborted NO_MISSION"
+    for name in ("fence", "rally"):
+        nothing = flight.say(f"{name}_download", path="none.plan")
+        assert flight.done(nothing) == "aborted NOT_ON_BOARD"
 
 
 def test_what_is_put_counts_for_the_vehicle_and_stays_in_the_air(personality: Personality) -> None:

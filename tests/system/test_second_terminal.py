@@ -186,10 +186,13 @@ def test_a_kept_station_outlives_its_operator_and_is_flown_by_one_shots(
     other = gcs("goto", "2", "0", "2", *link, "--policy", "lab")
     assert other.returncode == ExitCode.USAGE
     assert "policy lab was asked for, it has patient" in other.stderr
-    moved = gcs(
-        "goto", "2", "0", "2", *link, "--policy", PATIENT_POLICY, "--log-dir", str(tmp_path)
-    )
-    assert (moved.returncode, moved.stdout) == (0, "resume: complete\ngoto 2 0 2: complete\n")
+    goto = ("goto", "2", "0", "2", *link, "--policy", PATIENT_POLICY, "--log-dir", str(tmp_path))
+    held = gcs(*goto)
+    assert held.returncode == ExitCode.REFUSED_BY_GATE
+    assert "hint: gcs resume" in held.stderr
+    assert gcs("resume", *link).returncode == 0
+    moved = gcs(*goto)
+    assert (moved.returncode, moved.stdout) == (0, "goto 2 0 2: complete\n")
     assert listed("status", *link)["state"] == "HOVERING", "a one-shot leaves it as it is"
     ended = gcs("stations", "end")
     assert ended.returncode == 0, ended.stderr

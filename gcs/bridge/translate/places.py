@@ -98,8 +98,9 @@ def place_of(
 def north_east_of(seen: Seen, lat_deg: float, lon_deg: float) -> tuple[float, float] | Refusal:
     """Metres north and east of the origin."""
     if not (abs(lat_deg) <= 90.0 and abs(lon_deg) <= 180.0):
+        known = math.isfinite(lat_deg) and math.isfinite(lon_deg)
         return Refusal(
-            Code.NON_FINITE,
+            Code.BAD_PARAMETER if known else Code.NON_FINITE,
             f"{lat_deg:g}, {lon_deg:g} is no place on the map",
             (("lat_deg", lat_deg), ("lon_deg", lon_deg)),
         )

@@ -154,7 +154,7 @@ def _fly_plain(
         as_json,
         strict,
         config.speedup,
-        simulated=config.sim is not None,
+        simulated=config.sim is not None and not config.keep,
     )
     with Interrupts() as interrupts:
         station = StationClient.start(config)
@@ -222,7 +222,8 @@ def _fly_keyboard(
     )
     app.run()
     simulated = config.sim is not None
-    code = print_result(app.result, lambda line: click.echo(line, err=True), simulated=simulated)
+    ended = simulated and not config.keep
+    code = print_result(app.result, lambda line: click.echo(line, err=True), simulated=ended)
     if code or app.heard_vehicle:
         return code
     if app.interrupted:

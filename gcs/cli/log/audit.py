@@ -15,7 +15,7 @@ import click
 
 from gcs.cli.key import read_key_file
 from gcs.cli.options import UTF8
-from gcs.cli.records.files import LAST, RECORD, one_record, told
+from gcs.cli.records.files import LAST, RECORD, chosen, one_record, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -163,10 +163,11 @@ def _progress(session: SessionFiles) -> Iterator[Callable[[Path, int], None] | N
 
 @click.command(epilog="Example: gcs log sign logs/20260101-120000_flight.mcap --key records.key")
 @click.argument("files", type=RECORD, nargs=-1, metavar="FILE...")
+@LAST
 @click.option(
     "--key", type=UTF8, required=True, metavar="KEYFILE", help="As `gcs key new` makes it."
 )
-def sign(files: tuple[Path, ...], key: str) -> None:
+def sign(files: tuple[Path, ...], last: bool, key: str) -> None:
     """Sign a record, in a file beside it; gcs log audit --key KEYFILE checks it.
 
     The signature is over every byte: a record that is compacted or otherwise written anew is signed
@@ -175,7 +176,7 @@ def sign(files: tuple[Path, ...], key: str) -> None:
     from gcs.record.signature import sign as sign_record
 
     secret = read_key_file(key)
-    for file in files:
+    for file in chosen(files, last=last):
         with told(file):
             path = sign_record(file, secret)
         click.echo(f"{path}: signed with {secret.fingerprint}")

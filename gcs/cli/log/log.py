@@ -14,7 +14,7 @@ from gcs.cli.log.import_export import cannot_write, export_log, import_log
 from gcs.cli.log.replay import replay
 from gcs.cli.log.report import report
 from gcs.cli.log.rewrite import compact, cut, merge, recover
-from gcs.cli.records.files import LAST, RECORD, newest, one_record, reading_progress, told
+from gcs.cli.records.files import LAST, RECORD, chosen, one_record, reading_progress, told
 from gcs.exit_codes import ExitCode
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def info(files: tuple[Path, ...], last: bool, as_json: bool) -> None:
 
     from gcs.record.info import read_info
 
-    for number, file in enumerate(_chosen(files, last=last)):
+    for number, file in enumerate(chosen(files, last=last)):
         with told(file), reading_progress(file, "reading") as progress:
             flight = read_info(file, progress)
         if as_json:
@@ -74,15 +74,6 @@ def info(files: tuple[Path, ...], last: bool, as_json: bool) -> None:
             if number:
                 click.echo()
             _print(flight)
-
-
-def _chosen(files: tuple[Path, ...], *, last: bool) -> tuple[Path, ...]:
-    """Raises UsageError where none is named, and ExitError where there is no last one."""
-    if not last:
-        if not files:
-            raise click.UsageError("Missing argument 'FILE...'; --last is the newest of logs/")
-        return files
-    return (newest(files),)
 
 
 @log.command()

@@ -11,7 +11,15 @@ from pathlib import Path
 import click
 
 from gcs.cli.options import FiniteRange
-from gcs.cli.records.files import NEW_RECORD, RECORD, reading_progress, told, writing
+from gcs.cli.records.files import (
+    LAST,
+    NEW_RECORD,
+    RECORD,
+    one_record,
+    reading_progress,
+    told,
+    writing,
+)
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -46,8 +54,9 @@ def compact(files: tuple[Path, ...]) -> None:
 
 
 @click.command()
-@click.argument("file", type=RECORD)
+@click.argument("file", type=RECORD, required=False)
 @NEW_RECORD
+@LAST
 @click.option("--from", "from_s", type=_SECONDS, metavar="S", help="Seconds after its beginning.")
 @click.option("--to", "to_s", type=_SECONDS, metavar="S", help="Seconds after its beginning.")
 @click.option("--around", type=int, metavar="REQUEST", help="Around this request's decisions.")
@@ -60,8 +69,9 @@ def compact(files: tuple[Path, ...]) -> None:
     help="With --around: so much before the first and after the last of them.",
 )
 def cut(
-    file: Path,
+    file: Path | None,
     output: Path,
+    last: bool,
     from_s: float | None,
     to_s: float | None,
     around: int | None,
@@ -79,6 +89,8 @@ def cut(
     from gcs.record.cut import NotInRecordError
     from gcs.record.cut import around as stretch_around
     from gcs.record.cut import cut as cut_file
+
+    file = one_record(file, last=last)
 
     if (around is None) == (from_s is None and to_s is None):
         raise click.UsageError("say which stretch: --from and --to, or --around REQUEST")

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TypedDict, Unpack
+from typing import Unpack
 
 import click
 
 from gcs.cli import completers
-from gcs.cli.common_options import COMMON, MeetsVehicle
+from gcs.cli.common_options import COMMON, MeetsVehicle, ToVehicle, set_up
 from gcs.cli.mission.files import MISSION_FILE
-from gcs.cli.options import (
-    UTF8,
-    WARNING,
-    Seconds,
-    asked_for,
-    log_level,
-    station_config,
-    typed,
-    with_options,
-)
+from gcs.cli.options import UTF8, Seconds, with_options
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -35,22 +26,6 @@ WAIT = click.Option(
     help="Seconds to wait for the effect.",
 )
 LINK_OPTIONS = (WAIT, *COMMON)
-
-
-class ToVehicle(TypedDict):
-    """What `LINK_OPTIONS` come to."""
-
-    links: tuple[str, ...]
-    vehicle: int | None
-    policy: str
-    sign_key: str
-    log_dir: str
-    timeout: float
-    wait: float
-    as_json: bool
-    take: bool
-    verbose: bool
-    quiet: bool
 
 
 @click.command(
@@ -176,27 +151,7 @@ def run_word(word: str, *arguments: str | int, **to: Unpack[ToVehicle]) -> None:
     assert isinstance(action, SendRequests)
     for request in action.requests:
         UTF8.convert(request.path, None, None)
-    setup = station_config(
-        to["links"],
-        to["policy"],
-        to["log_dir"],
-        name="mission",
-        timeout_s=to["timeout"],
-        vehicle=to["vehicle"],
-        sign_key=to["sign_key"],
-    )
-    what = label(action.requests[0])
-    how = oneshot_session.OneShotConfig(
-        to["timeout"],
-        to["wait"],
-        to["as_json"],
-        what,
-        take=to["take"],
-        anywhere=not typed("links"),
-        wanted=asked_for(),
-        min_level=log_level(WARNING, quiet=to["quiet"], verbose=to["verbose"]),
-        quiet=to["quiet"],
-    )
+    setup, how = set_up("mission", label(action.requests[0]), to)
     task = oneshot_session.sending(action, to["wait"])
     code = oneshot_session.run(setup, how, task)
     click.get_current_context().exit(code)

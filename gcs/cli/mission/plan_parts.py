@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack
 
 import click
 
-from gcs.cli.common_options import MeetsVehicle
+from gcs.cli.common_options import MeetsVehicle, ToVehicle
 from gcs.cli.mission.files import AUTOPILOT, FORCE, HOME, MISSION_FILE, read_plan
-from gcs.cli.mission.live import EXITS, LINK_OPTIONS, ToVehicle, check_output, readable, run_word
+from gcs.cli.mission.live import EXITS, LINK_OPTIONS, check_output, readable, run_word
 from gcs.cli.options import AS_JSON, POLICY, with_options
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
@@ -62,13 +62,16 @@ def _group(part: Part, example: str) -> click.Group:
     @group.command(
         epilog=f"Example: gcs {part} show {example}", help=f"Print the {what} of a file."
     )
-    @click.argument("file", type=MISSION_FILE)
+    @click.argument("file", type=MISSION_FILE, required=False)
     @with_options(AUTOPILOT, AS_JSON)
-    def show(file: str, autopilot: AutopilotName | None, as_json: bool) -> int:
+    def show(file: str | None, autopilot: AutopilotName | None, as_json: bool) -> int:
         from gcs.cli.mission.mission import has_braille
         from gcs.cli.mission.report import plan_json, print_plan
         from gcs.cli.mission.route import route_of
 
+        if file is None:
+            on_board = f"what is on board, `gcs {part} download FILE` brings"
+            raise click.UsageError(f"Missing argument 'FILE'; {on_board}.")
         plan = _only(part, file, autopilot)
         route = route_of(plan, autopilot, "default", None)
         if as_json:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final, Unpack
 import click
 import msgspec
 
-from gcs.cli.common_options import MeetsVehicle
-from gcs.cli.mission.live import LINK_OPTIONS, ToVehicle
+from gcs.cli.common_options import MeetsVehicle, ToVehicle
+from gcs.cli.mission.live import LINK_OPTIONS
 from gcs.cli.options import with_options
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Unpack
 import click
 import msgspec
 
-from gcs.cli.common_options import MeetsVehicle
-from gcs.cli.mission.live import LINK_OPTIONS, ToVehicle
+from gcs.cli.common_options import MeetsVehicle, ToVehicle
+from gcs.cli.mission.live import LINK_OPTIONS
 from gcs.cli.options import with_options
 from gcs.cli.param.files import diff, load, save
 from gcs.exit_codes import ExitCode

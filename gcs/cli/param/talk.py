@@ -7,9 +7,8 @@ from collections.abc import Callable
 import click
 
 from gcs import ipc
-from gcs.cli.mission.live import ToVehicle
-from gcs.cli.oneshot_session import OneShotConfig, run
-from gcs.cli.options import asked_for, station_config
+from gcs.cli.common_options import ToVehicle, set_up
+from gcs.cli.oneshot_session import run
 from gcs.cli.progress import ProgressDisplay
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text
@@ -114,27 +113,8 @@ def with_vehicle(
     what: str, to: ToVehicle, task: Callable[[Talk], ExitCode], *, record: bool = False
 ) -> ExitCode:
     """Do `task` through the running station, or one of our own; `record`: it changes something."""
-    setup = station_config(
-        to["links"],
-        to["policy"],
-        to["log_dir"],
-        name="param",
-        timeout_s=to["timeout"],
-        vehicle=to["vehicle"],
-        record=record,
-        sign_key=to["sign_key"],
-    )
-    how = OneShotConfig(
-        to["timeout"],
-        to["wait"],
-        to["as_json"],
-        what,
-        anywhere=not to["links"],
-        take=to["take"] and record,  # to read needs no control
-        placed=False,
-        wanted=asked_for(),
-        told=False,
-    )
+    takes = to["take"] and record  # to read needs no control
+    setup, how = set_up("param", what, to, record=record, take=takes, placed=False, told=False)
 
     def talk(dialogue: Dialogue, display: ProgressDisplay) -> ExitCode:
         try:

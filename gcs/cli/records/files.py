@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -27,6 +27,13 @@ class FileOfKind(click.Path):
     def __init__(self, *suffixes: str) -> None:
         super().__init__(exists=True, dir_okay=False, path_type=Path)
         self._complete = completers.files(*suffixes)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Raises ExitError with BAD_FILE."""
+        try:
+            return Path(str(super().convert(value, param, ctx)))
+        except click.BadParameter as error:
+            raise ExitError(ExitCode.BAD_FILE, error.message.rstrip(".")) from None
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
@@ -56,6 +63,14 @@ def one_record(file: Path | None, *, last: bool) -> Path:
     if file is None and not last:
         raise click.UsageError("Missing argument 'FILE'; --last is the newest record.")
     return file or newest()
+
+
+def chosen(files: tuple[Path, ...], *, last: bool) -> tuple[Path, ...]:
+    """FILE..., or with --last the newest of them, of the log folder where none is named.  Raises
+    UsageError where it is neither."""
+    if not (files or last):
+        raise click.UsageError("Missing argument 'FILE...'; --last is the newest of logs/")
+    return (newest(files),) if last else files
 
 
 NEW_RECORD = click.option(

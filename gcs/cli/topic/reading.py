@@ -111,7 +111,7 @@ def decoded(
             yield heard, fields, paths
     told = [f"{name}: {count} messages: {why}" for name, (count, why) in passed_over.items()]
     if told and not any_decoded:
-        hint = "gcs topic list tells types; MAVLink and JSON topics are decoded"
+        hint = "gcs topic list tells types; MAVLink, JSON and /log are decoded"
         raise ExitError(ExitCode.BAD_FILE, told[0], hint)
     for line in told:
         click.echo(f"gcs: passed over: {line}", err=True)

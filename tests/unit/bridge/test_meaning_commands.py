@@ -68,7 +68,12 @@ def at(
 
 TO_PX4_PLACE = (e7(PX4_LAT), e7(PX4_LON))
 TO_ARDU_PLACE = (e7(ARDU_LAT), e7(ARDU_LON))
-OFF_THE_MAP: list[tuple[float, float]] = [(91, 8), (47, 181), (NAN, 8), (47, INF)]
+OFF_THE_MAP: list[tuple[tuple[float, float], str]] = [
+    ((91, 8), "BAD_PARAMETER"),
+    ((47, 181), "BAD_PARAMETER"),
+    ((NAN, 8), "NON_FINITE"),
+    ((47, INF), "NON_FINITE"),
+]
 CLICK = there(CHANGE_MODE, NAN, PX4_LAT, PX4_LON, 505.0)
 EAST, NORTH, UP = goal(meaning_of(CLICK, flying(PX4)))
 GOES_THERE = "goto 50 100 17"
@@ -161,11 +166,13 @@ COMMANDS = {
         ),
         Row(P, air(origin=None), CLICK, "NO_ORIGIN"),
         *(
-            Row(P, air(), there(1, NAN, *place, 505), "NON_FINITE: no place on the map")
-            for place in OFF_THE_MAP
+            Row(P, air(), there(1, NAN, *place, 505), f"{code}: no place on the map")
+            for place, code in OFF_THE_MAP
         ),
         # 0x7FF80000 is the upper half of a NaN; PX4 denies it ("x/y invalid of command").
-        Row(P, air(), at(RELATIVE, 0x7FF80000, 0x7FF80000, 5), "NON_FINITE: no place on the map"),
+        Row(
+            P, air(), at(RELATIVE, 0x7FF80000, 0x7FF80000, 5), "BAD_PARAMETER: no place on the map"
+        ),
     ],
     "reposition of an ArduPilot": [
         Row(A, air(), at(RELATIVE, *TO_ARDU_PLACE, 5, 0.0, 1.0), GOES_THERE),

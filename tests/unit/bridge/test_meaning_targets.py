@@ -262,7 +262,7 @@ TARGETS = {
             on_the_map(POSITION, (LAT, LON, 5)),
             "NO_ORIGIN",
         ),
-        Row(BOTH, air(), on_the_map(POSITION, (100, 8, 5)), "NON_FINITE: no place on the map"),
+        Row(BOTH, air(), on_the_map(POSITION, (100, 8, 5)), "BAD_PARAMETER: no place on the map"),
     ],
     "a guided item of an ArduPilot is a go-to": [
         Row(A, air(), EXACT_ITEM, "goto 0 111.319 17"),

@@ -10,7 +10,7 @@ from typing import Any
 import click
 import pytest
 
-from gcs.cli import oneshot, options, settings
+from gcs.cli import common_options, options, settings
 from gcs.cli.settings_file import parse, template
 from gcs.config import DEFAULT_LINK, StationConfig
 from gcs.exit_codes import ExitCode
@@ -77,7 +77,9 @@ def test_a_command_has_what_the_files_say_and_options_go_before_them(
 ) -> None:
     made: list[StationConfig] = []
     monkeypatch.setattr(
-        oneshot, "station_config", lambda *a, **k: made.append(options.station_config(*a, **k))
+        common_options,
+        "station_config",
+        lambda *a, **k: made.append(options.station_config(*a, **k)),
     )
     monkeypatch.setattr("gcs.cli.oneshot_session.run", lambda *_: ExitCode.DONE)
     write("project", 'links = ["udpin://127.0.0.1:5"]\npolicy = "lab"\ntimeout_s = 3\n')
@@ -114,6 +116,18 @@ def test_what_is_wrong_names_file_line_and_what_to_do(
     assert ended.exit_code == ExitCode.BAD_FILE
     assert f"gcs: {path}:{told}" in ended.output
     assert hint in ended.output.split("hint: ")[1]
+
+
+def test_all_that_is_wrong_is_told_at_once(write: Write) -> None:
+    path = write(
+        "project", 'links = 3\npolcy = 5\ntimeout_s = 0\n[keys]\nlnad = ["L"]\nhold = [" "]'
+    )
+    other = write("user", 'policy = "nosuch.toml"')
+    ended = gcs("config", "check")
+    assert ended.exit_code == ExitCode.BAD_FILE
+    told = [line for line in ended.output.splitlines() if line.startswith("gcs: ")]
+    places = [*(f"{path}:{line}:" for line in (1, 2, 3, 5, 6)), f"{other}:1:"]
+    assert [each.split()[1] for each in told] == places
 
 
 def test_a_wrong_file_keeps_a_flight_back_and_never_a_stop(

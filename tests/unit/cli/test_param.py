@@ -9,12 +9,9 @@ from pathlib import Path
 import pytest
 
 from gcs import ipc
-from gcs.cli import oneshot_session
-from gcs.cli.param import talk
-from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
-from tests.unit.cli.command_line import gcs
-from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
+from tests.unit.cli.command_line import gcs, in_place_of_one
+from tests.unit.operator.fake_station import FakeStation
 
 
 @dataclass
@@ -55,16 +52,7 @@ class Station(FakeStation):
 @pytest.fixture
 def station(monkeypatch: pytest.MonkeyPatch) -> Station:
     """That the commands talk to, in place of a process of their own."""
-    fake = Station()
-
-    def run(
-        _: StationConfig, how: oneshot_session.OneShotConfig, task: oneshot_session.Task
-    ) -> int:
-        fake.done = False
-        return oneshot_session.run_over(FakeConnection(fake), NoInterrupts(), how, task)
-
-    monkeypatch.setattr(talk, "run", run)
-    return fake
+    return in_place_of_one(Station(), monkeypatch)
 
 
 def test_a_list_by_pattern_or_part(station: Station) -> None:

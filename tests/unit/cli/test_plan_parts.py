@@ -65,6 +65,7 @@ def test_each_sends_its_request(
         ("rally check rally --home 47.0,8.0,488", 6, "TOO_FAR"),
         ("rally check fence", 4, "hint: it has 7 items, a fence of 3 zones"),
         ("rally show rally", 0, "10 m above home"),
+        ("fence show", 2, "`gcs fence download FILE` brings"),
         ("fence check nosuch", 4, "no such mission file"),
         ("fence download fence.kml", 2, "no format that can be written"),
     ],

@@ -47,7 +47,7 @@ def found(monkeypatch: pytest.MonkeyPatch) -> list[Description]:
 @pytest.fixture
 def connection(monkeypatch: pytest.MonkeyPatch, found: list[Description]) -> FakeConnection:
     """What joining the station gives; starting one of its own fails the test."""
-    fake = FakeConnection(FakeStation("airborne"))
+    fake = FakeConnection(FakeStation("airborne", client=2))
 
     def refuse(*_: object) -> None:
         raise AssertionError("a station of its own was started")
@@ -75,8 +75,9 @@ def test_a_command_on_a_link_that_a_station_has_goes_through_that_station(
     connection: FakeConnection, capsys: pytest.CaptureFixture[str]
 ) -> None:
     how = OneShotConfig(10.0, 60.0, as_json=False, what="goto 3 0 2")
+    connection.station = in_state("HOVERING")
     assert run("goto 3 0 2", how) == ExitCode.DONE
-    assert words(connection) == ["control", "goto"]
+    assert words(connection) == ["goto"]
     shown = capsys.readouterr()
     assert "goto 3 0 2: complete" in shown.out
     assert "gcs: through the running station of process 4711" in shown.err
@@ -88,6 +89,27 @@ def test_a_stop_waits_for_nothing_that_the_station_knows(connection: FakeConnect
     how = OneShotConfig(10.0, 60.0, as_json=False, what="abort", stops=True)
     run("abort", how)
     assert connection.asked_at_s[0] == 0.0
+
+
+def in_state(state: str) -> FakeStation:
+    """Of a station that somebody else has started, with a vehicle in the air."""
+    return FakeStation(state=state, armed=True, pos=(1.0, 1.0, 2.0), client=2)
+
+
+@pytest.mark.parametrize(
+    ("state", "code", "hint"),
+    [("HOLDING", "HOLDING", "gcs resume"), ("EXTERNAL", "NOT_IN_CONTROL", "gcs control")],
+)
+def test_what_is_held_or_flown_by_others_stays_so_until_that_is_asked_for(
+    connection: FakeConnection, capsys: pytest.CaptureFixture[str], state: str, code: str, hint: str
+) -> None:
+    connection.station = in_state(state)
+    how = OneShotConfig(10.0, 60.0, as_json=False, what="goto 3 0 2")
+    assert run("goto 3 0 2", how) == ExitCode.REFUSED_BY_GATE
+    assert words(connection) == ["goto"]
+    shown = capsys.readouterr()
+    assert f"goto 3 0 2: refused {code}: " in shown.out
+    assert f"  hint: {hint}\n" in shown.err
 
 
 def test_control_is_taken_over_only_when_that_is_asked_for(connection: FakeConnection) -> None:
@@ -104,6 +126,7 @@ def test_the_only_station_will_do_where_no_link_is_named(
     connection: FakeConnection, line: str
 ) -> None:
     how = OneShotConfig(10.0, 60.0, as_json=False, what=line, anywhere=True)
+    connection.station = in_state("HOVERING")
     assert run(line, how, DEFAULT) == ExitCode.DONE
     assert words(connection)[-1] == line.split()[0]
 
@@ -154,6 +177,7 @@ def test_an_option_that_a_running_station_cannot_honour_is_refused(
 def test_an_option_that_says_what_the_station_has_is_none_the_less_right(
     connection: FakeConnection,
 ) -> None:
+    connection.station = in_state("HOVERING")
     typed = ("--policy", "default", "--log-dir", "/flights", "--vehicle", 1)
     assert gcs("goto", 3, 0, 2, "--link", LINK, *typed).exit_code == ExitCode.DONE
 

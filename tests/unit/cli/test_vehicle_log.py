@@ -10,12 +10,10 @@ from pathlib import Path
 import pytest
 
 from gcs import ipc
-from gcs.cli import oneshot_session
-from gcs.cli.param import talk
-from gcs.config import StationConfig
+from gcs.cli import vehicle_log
 from gcs.exit_codes import ExitCode
-from tests.unit.cli.command_line import gcs
-from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
+from tests.unit.cli.command_line import gcs, in_place_of_one
+from tests.unit.operator.fake_station import FakeStation
 
 LOG = bytes(range(256)) * 100
 LOGS = [ipc.LogInfo(0, 10, 1_700_000_000), ipc.LogInfo(1, len(LOG), 1_800_000_000)]
@@ -68,16 +66,7 @@ class Station(FakeStation):
 @pytest.fixture
 def station(monkeypatch: pytest.MonkeyPatch) -> Station:
     """That the commands talk to, in place of a process of their own."""
-    fake = Station()
-
-    def run(
-        _: StationConfig, how: oneshot_session.OneShotConfig, task: oneshot_session.Task
-    ) -> int:
-        fake.done = False
-        return oneshot_session.run_over(FakeConnection(fake), NoInterrupts(), how, task)
-
-    monkeypatch.setattr(talk, "run", run)
-    return fake
+    return in_place_of_one(Station(), monkeypatch)
 
 
 def test_the_list(station: Station) -> None:
@@ -146,3 +135,15 @@ def test_a_part_of_something_else_is_found_by_its_check_sum(
 @pytest.mark.parametrize("which", ["9", "newest"])
 def test_a_log_that_is_none(which: str, station: Station) -> None:
     assert gcs("vehicle-log", "get", which).exit_code == ExitCode.USAGE
+
+
+def test_what_cannot_be_imported_is_not_fetched(
+    station: Station, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(vehicle_log, "find_spec", lambda _: None)
+    result = gcs(
+        "vehicle-log", "get", "1", "-o", tmp_path / "a.ulg", "--import", tmp_path / "a.mcap"
+    )
+    assert result.exit_code == ExitCode.USAGE
+    assert "pip install 'mavgate[logs]'" in result.output
+    assert not any(ask.word.endswith("_read") for ask in station.asked)

@@ -16,7 +16,6 @@ from gcs.flight_report.facts import (
     Fact,
     Gps,
     Identity,
-    LogLine,
     Text,
     Vibration,
 )
@@ -29,9 +28,10 @@ from gcs.flight_report.summary import (
     what_happened,
     what_went_wrong,
 )
-from gcs.flight_report.topics import read_log_line, source_of
+from gcs.flight_report.topics import source_of
 from gcs.mcap_file.errors import BadRecordError
 from gcs.record import ros1
+from gcs.record.log_line import read_log_line
 from gcs.report import (
     AttachmentItem,
     ConditionItem,
@@ -326,7 +326,7 @@ class TestLogLine:
             file="x.py",
             line=3,
         )
-        assert read_log_line(line.encode()) == LogLine(3, "gate", "Grüße <b>")
+        assert read_log_line(line.encode()) == (3, "gate", "Grüße <b>")
 
     @pytest.mark.parametrize("data", [b"\x12", b"\x12\xff\x01", b"\xff" * 12, b"\x17\x01"])
     def test_what_is_none(self, data: bytes) -> None:

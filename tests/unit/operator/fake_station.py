@@ -58,6 +58,8 @@ class FakeStation:
     """Goals that are refused, with code and sentence."""
     preflight_rows: list[ipc.PreflightRow] = field(default_factory=list)
     """Beside one that passes and a caution."""
+    client: int = 1
+    """The number of the operator who talks with it; 1 has started it."""
 
     def hello(self) -> list[ipc.Event]:
         fence = ipc.FenceShape(
@@ -70,7 +72,14 @@ class FakeStation:
         if self.scenario == "airborne":
             self.state, self.armed, self.pos = "EXTERNAL", True, (1.0, 1.0, 2.0)
         return [
-            ipc.Hello("0.1.0", "logs/x.mcap", ["udpin://127.0.0.1:14550"], "default", [fence]),
+            ipc.Hello(
+                "0.1.0",
+                "logs/x.mcap",
+                ["udpin://127.0.0.1:14550"],
+                "default",
+                [fence],
+                client=self.client,
+            ),
             self._log("link: up"),
         ]
 
@@ -182,6 +191,9 @@ class FakeStation:
         if ask.word in ("land", "rtl"):
             ended = self._end("superseded")
             return [*ended, *self._begin(ask, "LANDING", (*self.pos[:2], 0.0))]
+        if self.state in ("HOLDING", "EXTERNAL"):
+            code = "HOLDING" if self.state == "HOLDING" else "NOT_IN_CONTROL"
+            return self._refuse(ask, code, f"the vehicle is {self.state}")
         if self.state not in FREE:
             return self._refuse(ask, "BUSY", f"the vehicle is {self.state}")
         if ask.word == "stream_begin":

@@ -88,6 +88,12 @@ def test_what_is_no_message_of_its_topic_is_told(
         recorded_topic("/x", schema, encoding, metadata, b"").decode(data)
 
 
+def test_a_line_of_the_log_has_level_node_and_text() -> None:
+    line = bytes.fromhex("1003 1a02 6869 2204 67617465")  # level 3, message "hi", name "gate"
+    fields = recorded_topic("/log", "foxglove.Log", "protobuf", {}, b"").decode(line)
+    assert fields == {"level": 3, "node": "gate", "text": "hi"}
+
+
 def test_garbage_is_told_with_its_reason() -> None:
     data = (3).to_bytes(4, "little") + b"crc" + (2).to_bytes(4, "little") + b"\xfd\x00"
     topic = recorded_topic("/link/0/garbage", "mavlink/Garbage", "ros1", {}, b"")

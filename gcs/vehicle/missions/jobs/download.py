@@ -89,7 +89,9 @@ class Download(Job):
                 return self.end(OutcomeKind.COMPLETE, None, f"{text} on board")
             if not found:
                 text = f"{self._none} is on board: {self._path} was not written"
-                return self.end(OutcomeKind.ABORTED, Code.NO_MISSION, text)
+                mission = MissionType.MISSION in self._kinds
+                code = Code.NO_MISSION if mission else Code.NOT_ON_BOARD
+                return self.end(OutcomeKind.ABORTED, code, text)
             written = write(self._path, plan, autopilot)
         except PlanError as error:
             return self.end(OutcomeKind.ABORTED, Code.BAD_MISSION, str(error))
