@@ -1,8 +1,7 @@
-"""What the keys and the typed lines do: everything that an operator sends leaves from here."""
+"""What the keys do.  All that keys and typed lines (`line_actions.py`) send leaves from here."""
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,11 +10,8 @@ from time import monotonic
 import msgspec
 from textual.events import Event, Key, Paste
 
-from gcs import ipc, request_words, resources
-from gcs.operator import event_text
+from gcs import ipc, request_words
 from gcs.operator.client import Listened
-from gcs.operator.line_parser import LineError, parse_line
-from gcs.tui import look
 from gcs.tui.command_line import CommandLine
 from gcs.tui.keyboard import DIRECTIONS, PendingGoal, VelocityKeys
 from gcs.tui.keymap import Keymap
@@ -24,11 +20,11 @@ from gcs.tui.leaving import LeavingApp
 from gcs.tui.panels import map_panel
 from gcs.tui.panels.log_panel import LogPanel
 from gcs.tui.scene import REFUSED, Answer
-from gcs.tui.verdict_ahead import VerdictAhead, typed_line
+from gcs.tui.verdict_ahead import VerdictAhead
 
 
 class KeyActions(LeavingApp):
-    """Keys change a pending goal; Enter, the command keys and typed lines send requests.
+    """Keys change a pending goal; Enter and the command keys send requests.
 
     Requests are written to the station in the key's handler itself, so that an abort waits for no
     drawing.
@@ -55,7 +51,12 @@ class KeyActions(LeavingApp):
     # ---------------------------------------------------------------- keys: the one door
 
     async def on_event(self, event: Event) -> None:
-        """While a line is typed the keys are its letters."""
+        """While a line is typed the keys are its letters.
+
+        Esc and a letter that were read together, as after a stall of the network, come as Alt with
+        that letter: the Esc counts, which stops the vehicle, and the letter is dropped."""
+        if isinstance(event, Key) and event.key.startswith("alt+") and event.character:
+            event = Key("escape", None)
         typed = isinstance(event, Key | Paste) and not event.is_forwarded
         line = self.query_one(CommandLine) if typed and self.query(CommandLine) else None
         if line is None or not line.display or (isinstance(event, Key) and event.key in ALWAYS):
@@ -254,76 +255,3 @@ class KeyActions(LeavingApp):
 
     def action_help(self) -> None:
         self.query_one("#help").display = True
-
-    # --------------------------------------------------------------------- typed lines
-
-    def action_words(self) -> None:
-        self.query_one(CommandLine).open(":")
-
-    def action_search(self) -> None:
-        self.query_one(CommandLine).open("/")
-
-    def entered(self, prompt: str, text: str) -> None:
-        """A line was finished."""
-        self.scene.note_key()
-        if prompt == ":":
-            self._then.clear()
-            self._run_line(text)
-            self.redraw()
-
-    def on_input_changed(self, changed: CommandLine.Changed) -> None:
-        """What is searched for, or would be answered, is shown while it is typed."""
-        if self.query_one(CommandLine).prompt == "/":
-            self.query_one(LogPanel).search(changed.value)
-        self.redraw()
-
-    def _look_at_line(self) -> None:
-        """What Enter would send now, where a line is typed."""
-        line, scene = self.query_one(CommandLine), self.scene
-        if not line.display or line.prompt != ":":
-            scene.typed = None
-        elif scene.typed is None or scene.typed.text != line.value:
-            scene.typed = typed_line(line.value)
-
-    def _run_line(self, text: str) -> None:
-        try:
-            line = parse_line(text)
-        except LineError as error:
-            self.scene.answer = Answer(f"{error.sentence}; {error.hint}", REFUSED)
-            return
-        match None if line is None else line.action:
-            case None:
-                pass
-            case request_words.SendRequests(requests):
-                self._request_in_turn([_with_file(each) for each in requests])
-            case request_words.FlyVelocity(v_enu, seconds):
-                self.scene.velocity = VelocityKeys(v_enu, monotonic() + seconds, typed=True)
-                self.action_request("stream_begin")
-            case request_words.ShowState():
-                seen, number = self.scene.snapshot, self.scene.talk.number
-                self._log_line(event_text.state_line(seen, number), look.PLAIN)
-            case request_words.ShowPreflight():
-                self.action_preflight()
-            case request_words.ShowHelp():
-                for each in request_words.help_lines():
-                    self._log_line(each, look.PLAIN)
-            case request_words.Quit():
-                self.action_leave()
-            case _:
-                told = f"{text}: is for --plain and scripts: here a line does not wait"
-                self.scene.answer = Answer(told, REFUSED)
-
-    def _log_line(self, text: str, style: str, level: int = 4, time_ns: int | None = None) -> None:
-        for panel in self.query(LogPanel):  # none once the screen has been given back
-            panel.tell(text, style, level, time_ns)
-
-
-def _with_file(request: ipc.Ask) -> ipc.Ask:
-    """A file is one of this program's folder, which need not be the station's, or is shipped."""
-    if not request.path:
-        return request
-    path = Path(request.path).absolute()
-    if request.word == "mission_upload":
-        with contextlib.suppress(resources.MissionNotFoundError):
-            path = resources.find(request.path).absolute()
-    return msgspec.structs.replace(request, path=str(path))

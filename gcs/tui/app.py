@@ -20,11 +20,11 @@ from gcs.operator import event_text
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.station_loss import after_station_died
 from gcs.tui import look, preflight_page, wind
-from gcs.tui.actions import KeyActions
 from gcs.tui.ascii_signs import in_ascii, needed
 from gcs.tui.command_line import CommandLine
 from gcs.tui.completion import Known, modes_of
 from gcs.tui.keymap import DEFAULT, Keymap
+from gcs.tui.line_actions import LineActions
 from gcs.tui.panels import (
     decisions_panel,
     frame_panels,
@@ -94,7 +94,7 @@ class MapPanel(Panel):
             self.post_message(self.Clicked(at.x, at.y))
 
 
-class FlyApp(KeyActions):
+class FlyApp(LineActions):
     """The panels, and what the station tells.
 
     Events are read in a thread and handled in the application's loop; the screen is drawn from

@@ -10,7 +10,7 @@ from rich.text import Text
 from gcs import ipc
 from gcs.gate.states import State
 from gcs.tui import look
-from gcs.tui.scene import Scene
+from gcs.tui.scene import ACCEPTED, COMPLETE, Scene
 
 DONE, CURRENT, STOPPED = "✓", "▶", "■"
 """Marks before an item: flown; under way; where the flight of it was stopped."""
@@ -31,9 +31,11 @@ def draw(scene: Scene, columns: int, rows: int) -> Text:
 
 
 def _verdict(scene: Scene, columns: int) -> list[tuple[str, str]]:
-    """What is on board, and what the gate has said of it, or of the last try."""
+    """What is on board, and what is wrong with it, or with the last thing that was asked of it."""
     mission, total = scene.mission, len(scene.mission.items)
-    said, style = scene.mission_said.text, look.ANSWER.get(scene.mission_said.kind, look.DIM)
+    last = scene.mission_said
+    said = "" if last.kind in (ACCEPTED, COMPLETE) else last.text
+    style = look.ANSWER.get(last.kind, look.DIM)
     if mission.unverified:
         said, style = mission.unverified, look.WARN
     lines = [(f"mission: {total} items, verified", look.GOOD)]

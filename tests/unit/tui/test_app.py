@@ -6,6 +6,7 @@ import asyncio
 
 import msgspec
 import pytest
+from textual.events import Key
 from textual.pilot import Pilot
 
 from gcs import ipc
@@ -107,10 +108,11 @@ def test_velocity_mode_ends_with_its_stream(event: ipc.Event) -> None:
     flown(script)
 
 
-@pytest.mark.parametrize("key", ["space", "escape"])
+@pytest.mark.parametrize("key", ["space", "escape", "alt+m"])
 def test_abort_is_one_key_and_is_on_its_way_before_anything_is_drawn(key: str) -> None:
-    async def script(_app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
-        await pilot.press(key)
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        app.post_message(Key(key, "m"))  # Esc and m in one read come as Alt-m
+        await pilot.pause()
         assert station.requests() == ["abort"]
 
     flown(script)

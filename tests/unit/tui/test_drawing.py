@@ -388,8 +388,10 @@ def test_the_mission_panel_shows_a_transfer_and_the_last_verdict() -> None:
     scene = scene_at((0.0, 0.0, 2.0))
     scene.update(ipc.ProgressEvent(9, "uploading", 3, 6, "items"))
     assert "█████░░░░░ uploading 3/6" in mission_rows(scene)
-    scene.update(ipc.EndingEvent(9, "mission_upload", "complete", "", "6 items are on board"))
-    assert mission_rows(scene)[1] == "mission upload: complete: 6 items"
+    scene.update(ipc.EndingEvent(9, "mission_upload", "aborted", "NO_ANSWER", "no answer"))
+    assert mission_rows(scene)[1] == "mission upload: aborted"
+    scene.update(ipc.EndingEvent(9, "mission_upload", "complete"))
+    assert mission_rows(scene)[1].startswith(":mission upload FILE")
     scene.update(ipc.VerdictEvent(10, "mission_start", "refused", "OUTSIDE_FENCE", "350 m out"))
     scene.update(ipc.VerdictEvent(11, "goto", "accepted"))
     assert "refused" in "".join(mission_rows(scene)[1:3])
