@@ -5,6 +5,7 @@ BIN    := $(VENV)/bin
 # The tools are there once `test` is installed; a plain flight needs `run` only.
 RUN    := $(VENV)/.run-installed
 TEST   := $(VENV)/.test-installed
+DOCS   := $(VENV)/.docs-installed
 # Other people's ground stations, each in an environment of its own.
 CLIENTS := .clients
 TESTED  := $(CLIENTS)/mavsdk/.installed $(CLIENTS)/mavsdk3/.installed $(CLIENTS)/pymavlink/.installed
@@ -20,7 +21,7 @@ FEWER   := --hypothesis-profile quick
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo quick test thorough check lint types contracts clients real soak oracles mutants bench messages wheel clean
+.PHONY: help demo quick test thorough check lint types contracts clients real soak oracles mutants bench docs messages wheel clean
 
 help: ## say what there is
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -67,6 +68,10 @@ mutants: $(TEST) ## alter the gate in one place at a time: does a test notice? A
 bench: $(TEST) $(CLIENTS)/mavio/.installed ## paired speed ratios against peers, in one run
 	$(BIN)/python -m tools
 
+docs: $(DOCS) ## build the documentation site into build/site; a link that leads nowhere is an error
+	$(BIN)/python -m sphinx -q -W --keep-going -b html -c docs -d build/doctrees . build/site
+	@echo "build/site/docs/index.html"
+
 messages: $(RUN) ## regenerate the message classes of gcs and vehicle_sim from the dialect
 	$(BIN)/python -m gcs.wire.generate
 	$(BIN)/python -m vehicle_sim.wire.generate
@@ -90,3 +95,7 @@ $(TEST): pyproject.toml
 	@echo "compiling the tests (once, else each worker of the first run does it)"
 	-@$(BIN)/python -m pytest --collect-only -qq >/dev/null 2>&1
 	@touch $@ $(RUN)
+
+$(DOCS): $(TEST)
+	@sh .ci/install $(VENV) '.[docs]' 30
+	@touch $@

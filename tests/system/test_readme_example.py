@@ -1,4 +1,4 @@
-"""The README's example for MAVSDK runs as it stands there."""
+"""The pages' examples of tests run as they stand there."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ pytest.importorskip("mavsdk")
 
 pytestmark = pytest.mark.system
 
-README = Path(__file__).parents[2] / "README.md"
-BEGIN, END = "<!-- example: mavsdk -->", "<!-- end of example -->"
+ROOT = Path(__file__).parents[2]
+BEGIN, END = "<!-- example: {} -->", "<!-- end of example -->"
 
 
-def example(readme: str) -> str:
+def example(page: str, name: str) -> str:
     """The code between the markers, without its fence."""
-    _, begin, rest = readme.partition(BEGIN)
+    _, begin, rest = page.partition(BEGIN.format(name))
     block, end, _ = rest.partition(END)
-    assert begin, f"README.md has no {BEGIN}"
-    assert end, f"README.md has no {END}"
+    assert begin, f"the page has no example {name}"
+    assert end, f"the page has no {END}"
     lines = block.strip().splitlines()
     assert (lines[0], lines[-1]) == ("```python", "```")
     return "\n".join(lines[1:-1]) + "\n"
@@ -34,19 +34,27 @@ def test_the_fence_is_not_a_part_of_the_example() -> None:
     text = textwrap.dedent(
         f"""\
         before
-        {BEGIN}
+        {BEGIN.format("one")}
         ```python
         import this
         ```
         {END}
         """
     )
-    assert example(text) == "import this\n"
+    assert example(text, "one") == "import this\n"
 
 
-def test_the_readmes_example_passes_as_it_stands(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("page", "name"),
+    [
+        ("README.md", "mavsdk"),
+        ("docs/ci.md", "vehicle in a test"),
+        ("docs/ci.md", "a gated test"),
+    ],
+)
+def test_the_example_passes_as_it_stands(tmp_path: Path, page: str, name: str) -> None:
     suite = tmp_path / "test_example.py"
-    suite.write_text(example(README.read_text(encoding="utf-8")), encoding="utf-8")
+    suite.write_text(example((ROOT / page).read_text(encoding="utf-8"), name), encoding="utf-8")
     ended = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(suite)],
         cwd=tmp_path,
