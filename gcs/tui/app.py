@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from time import monotonic
 
 from rich.console import RenderableType
@@ -12,7 +12,6 @@ from textual.binding import Binding, BindingsMap
 from textual.containers import Horizontal, Vertical
 from textual.events import Click, Resize
 from textual.message import Message
-from textual.widget import Widget
 from textual.widgets import Static
 
 from gcs import ipc, resources
@@ -20,7 +19,7 @@ from gcs.operator import event_text
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.station_loss import after_station_died
 from gcs.tui import look, preflight_page, wind
-from gcs.tui.ascii_signs import in_ascii, needed
+from gcs.tui.ascii_signs import needed
 from gcs.tui.command_line import CommandLine
 from gcs.tui.completion import Known, modes_of
 from gcs.tui.keymap import DEFAULT, Keymap
@@ -36,6 +35,7 @@ from gcs.tui.panels import (
 )
 from gcs.tui.panels.graphs import Graphs
 from gcs.tui.panels.log_panel import LogPanel
+from gcs.tui.panels.panel import Panel
 from gcs.tui.scene import REFUSED, Answer
 
 REDRAW_S = 0.1
@@ -45,37 +45,6 @@ WIDE_COLUMNS = 150
 TALL_ROWS = 50
 GOAL_PANELS = ("#goals", "#ahead", "#map", "#height")
 FOLDED_AFTER_S = 2.0
-
-
-class Panel(Widget):
-    """A drawing that fills whatever room it is given; put on the screen only where it changed."""
-
-    can_focus = False
-
-    def __init__(self, draw: Callable[[int, int], RenderableType], name: str, title: str = ""):
-        super().__init__(id=name)
-        self._draw = draw
-        self._drawn: RenderableType = ""
-        self._drawn_for = (-1, -1)
-        self.border_title = title
-
-    def redraw(self) -> None:
-        if not self.display:
-            return
-        before, self._drawn_for = self._drawn, (self.content_size.width, self.content_size.height)
-        self._drawn = self._drawing()
-        if self._drawn != before:
-            self.refresh()
-
-    def render(self) -> RenderableType:
-        if self._drawn_for != (self.content_size.width, self.content_size.height):
-            self._drawn_for = (self.content_size.width, self.content_size.height)
-            self._drawn = self._drawing()
-        return self._drawn
-
-    def _drawing(self) -> RenderableType:
-        drawing = self._draw(*self._drawn_for)
-        return in_ascii(drawing) if self.screen.has_class("-ascii") else drawing
 
 
 class MapPanel(Panel):
@@ -172,7 +141,6 @@ class FlyApp(LineActions):
     def on_mount(self) -> None:
         loop = asyncio.get_running_loop()
         self.screen.set_class(self._ascii, "-ascii")
-        self.query_one(LogPanel).ascii_only = self._ascii
         for event in self._first_events:
             self._handle(event)
         self._connection.listen(lambda event: self._hear(loop, event))

@@ -49,7 +49,12 @@ class Canvas:
             self.dot(x0 + (x1 - x0) * i / steps, y0 + (y1 - y0) * i / steps, style)
 
     def path(self, points: list[Point], style: str, *, every: int = 1) -> None:
-        for start, end in itertools.pairwise(points):
+        """Lines from dot to dot: points that fall in the dot of the one before are passed over."""
+        kept = points[:1]
+        for point in points[1:-1]:
+            if int(point[0]) != int(kept[-1][0]) or int(point[1]) != int(kept[-1][1]):
+                kept.append(point)
+        for start, end in itertools.pairwise([*kept, *points[1:][-1:]]):
             self.line(start, end, style, every=every)
 
     def glyph(self, x: float, y: float, char: str, style: str) -> None:

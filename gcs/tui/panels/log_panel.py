@@ -7,18 +7,19 @@ import time
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import islice
 from typing import Final
 
 from rich.text import Text
-from textual.events import Resize
-from textual.widgets import RichLog
+from textual.events import MouseScrollDown, MouseScrollUp
 
 from gcs import ipc
 from gcs.operator import event_text
 from gcs.tui import look
-from gcs.tui.ascii_signs import text_in_ascii
+from gcs.tui.panels.panel import Panel
 
 LOG_LINES: Final = 2000
+WHEEL_ROWS: Final = 3
 DEBUG, INFO, WARN = 1, 2, 3
 NEXT_LEVEL: Final = {INFO: WARN, WARN: DEBUG, DEBUG: INFO}
 LEVEL_NAMES: Final = {DEBUG: "debug and above", INFO: "info and above", WARN: "warnings and errors"}
@@ -33,25 +34,26 @@ class Entry:
     line: Text
 
 
-class LogPanel(RichLog):
+class LogPanel(Panel):
     """Shows what is said to it from `level` on, newest at the bottom, and keeps it all.
 
     Of equal lines that follow each other only the first is shown; how many came after it is said
     before the next other line.  Debug lines are equal if they differ in their numbers only.
     """
 
-    can_focus = False
-
     def __init__(self) -> None:
-        super().__init__(id="log", max_lines=LOG_LINES, wrap=True, min_width=1)
+        super().__init__(self._tail, "log")
         self.level = INFO
         self._entries: deque[Entry] = deque(maxlen=LOG_LINES)
+        self._rows: deque[Text] = deque(maxlen=LOG_LINES)
+        """What is shown of them, wrapped."""
+        self._columns = 0
+        self._back = 0
+        """How many rows below are out of sight, by the wheel."""
         self._like = ""
         self._folded = 0
         self._last: tuple[str, str, int] = ("", "", INFO)
-        self._columns = 0
         self._sought = ""
-        self.ascii_only = False
 
     def tell(self, text: str, style: str, level: int = INFO, time_ns: int | None = None) -> None:
         """`time_ns` of the wall clock; None is now."""
@@ -92,11 +94,26 @@ class LogPanel(RichLog):
             self._sought = text.lower()
             self._write_again()
 
-    def on_resize(self, event: Resize) -> None:
-        """Wrapped to the new width, and at its end if it was there."""
-        if self._columns not in (0, event.size.width):
+    def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
+        self._scroll(event, WHEEL_ROWS)
+
+    def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
+        self._scroll(event, -WHEEL_ROWS)
+
+    def _scroll(self, event: MouseScrollUp | MouseScrollDown, rows: int) -> None:
+        event.stop()
+        self._back = max(0, min(self._back + rows, len(self._rows) - self.content_size.height))
+        self.redraw()
+
+    def _tail(self, columns: int, rows: int) -> Text:
+        if columns != self._columns:
+            self._columns = columns
             self._write_again()
-        self._columns = event.size.width
+        end = len(self._rows) - self._back
+        shown = list(islice(self._rows, max(0, end - rows), end))
+        if self._back and shown:
+            shown[-1] = Text(f"… {self._back + 1} rows below", look.DIM)
+        return Text("\n", no_wrap=True, end="").join(shown)
 
     def _add(self, stamp: str, text: str, style: str, level: int) -> None:
         entry = Entry(level, Text.assemble((stamp, look.DIM), (text, style)))
@@ -106,15 +123,17 @@ class LogPanel(RichLog):
     def _show(self, entry: Entry) -> None:
         if self._sought and self._sought not in entry.line.plain.lower():
             return
-        if entry.level >= self.level or self._sought:
-            line = text_in_ascii(entry.line) if self.ascii_only else entry.line
+        if self._columns > 0 and (entry.level >= self.level or self._sought):
+            line = entry.line
             if self._sought:
                 line = line.copy()
                 line.highlight_words([self._sought], look.FOUND, case_sensitive=False)
-            self.write(line, expand=True)
+            wrapped = line.wrap(self.app.console, self._columns)
+            self._rows.extend(wrapped)
+            self._back += len(wrapped) if self._back else 0
 
     def _write_again(self) -> None:
-        self.clear()
+        self._rows.clear()
+        self._back = 0
         for entry in self._entries:
             self._show(entry)
-        self.scroll_end(animate=False)

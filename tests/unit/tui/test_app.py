@@ -6,7 +6,8 @@ import asyncio
 
 import msgspec
 import pytest
-from textual.events import Key
+from textual.events import Key, MouseScrollUp
+from textual.geometry import Region
 from textual.pilot import Pilot
 
 from gcs import ipc
@@ -16,6 +17,7 @@ from gcs.operator.conversation import Conversation
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.tui.app import FlyApp
 from gcs.tui.keymap import keymap
+from gcs.tui.panels.panel import Panel
 from gcs.tui.result import SessionResult, print_result, until_hello
 from tests.shares import one_in
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
@@ -400,6 +402,40 @@ def test_the_log_is_wrapped_again_for_a_narrower_screen_and_stays_at_its_end() -
         assert " t " in log[-2]
 
     flown(script, (160, 40))
+
+
+def test_the_wheel_looks_back_in_the_log_and_new_lines_leave_it_there() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        for n in range(40):
+            station.say(ipc.LogEvent(0, 2, "gate", f"line {n}."))
+        await drawn(app, pilot)
+        assert "line 39." in screen_text(app)
+        for _ in range(4):
+            await pilot._post_mouse_events([MouseScrollUp], "#log", offset=(5, 1))
+        station.say(ipc.LogEvent(0, 2, "gate", "the next line"))
+        await drawn(app, pilot)
+        shown = screen_text(app)
+        assert "14 rows below" in shown  # 12 by the wheel, the next, and the row that says it
+        assert "line 26." in shown
+        assert "the next line" not in shown
+
+    flown(script)
+
+
+def test_only_the_rows_that_changed_are_painted() -> None:
+    async def script(app: FlyApp, _station: ListeningStation, pilot: Pilot[None]) -> None:
+        await drawn(app, pilot)
+        painted: list[Region] = []
+        panel = app.query_one("#vehicle", Panel)
+        panel.refresh = lambda *regions, **_: painted.extend(regions)  # type: ignore[method-assign, assignment]
+        seen = app.scene.snapshot
+        assert seen is not None
+        app.scene.update(msgspec.structs.replace(seen, battery_pct=50.0))
+        panel.redraw()
+        assert len(painted) == 1
+        assert "batt" in "".join(s.text for s in panel.render_line(painted[0].y))
+
+    flown(script)
 
 
 def test_the_mission_key_uploads_the_mission_of_the_command_line_and_then_starts_it() -> None:
