@@ -48,6 +48,7 @@ class StationConfig(msgspec.Struct, frozen=True):
     rotate_bytes: int = 0  # a new file of the record from this size on; 0 = one file
     rotate_s: float = 0.0  # and after so long, by the station's clock; 0 = one file
     compact: bool = True  # files are rewritten in larger chunks once the station has ended
+    rule_path: str | msgspec.UnsetType = msgspec.UNSET  # `--verifier`: the operator's own rule
 
     @property
     def expected_sysid(self) -> int:

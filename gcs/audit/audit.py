@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 from gcs.audit import describe
 from gcs.audit.compare import Pair, Scope, differing
@@ -13,6 +14,10 @@ from gcs.audit.messages import Attachments, Stored
 from gcs.audit.replay import Replay
 from gcs.audit.seals import Altered, Missing
 from gcs.audit.turns import RecorderTurn, Turn, Turns
+from gcs.frames import Vec3
+from gcs.gate.policy.policy import Policy
+from gcs.session.effects import AskRule
+from gcs.session.inputs import RuleSaid
 from gcs.vehicle.record_items import Start
 
 KEPT_DIFFERENCES = 1_000
@@ -62,23 +67,36 @@ class AuditResult:
         return self.whole and self.differences == 0
 
 
+OwnRule: TypeAlias = Callable[[Vec3, Vec3, Policy], tuple[str | None, bool]]
+"""The auditor's own copy of the operator's rule: asked about start and goal (ENU, metres), it says
+its sentence, or None where it permits; and whether it failed."""
+
+
 def audit(
-    messages: Iterable[Stored], attachments: Attachments, version: str, environment: str
+    messages: Iterable[Stored],
+    attachments: Attachments,
+    version: str,
+    environment: str,
+    rule: OwnRule | None = None,
 ) -> AuditResult:
     """`messages` are those of all files of one session, in order, `attachments` likewise;
     `version` and `environment` are the auditor's own.
 
+    The answers of an operator's own rule are inputs, as the operator's lines are: nothing that is
+    attached to a record is ever run.  `rule`, if given, is asked again and compared with them.
     Raises NoStartError where it is not the record of a session from its beginning.
     """
-    return _Audit(AuditResult(audited_by=version, audited_in=environment), attachments).run(
-        messages
-    )
+    result = AuditResult(audited_by=version, audited_in=environment)
+    return _Audit(result, attachments, rule).run(messages)
 
 
 class _Audit:
-    def __init__(self, result: AuditResult, attachments: Attachments) -> None:
+    def __init__(self, result: AuditResult, attachments: Attachments, rule: OwnRule | None) -> None:
         self._result = result
         self._attachments = attachments
+        self._rule = rule
+        self._rule_answers: list[int] = []
+        """The requests on which the operator's own rule was asked, and has answered."""
         self._inputs: Counter[str] = Counter()
         self._compared: Counter[str] = Counter()
         self._scope = Scope()
@@ -96,6 +114,7 @@ class _Audit:
             self._turn(turn, replay)
         if replay is not None:
             self._attached(replay.attachments)
+            self._rule_noted(replay)
         for altered in turns.altered:
             self._altered(altered)
         self._ending(turns)
@@ -134,6 +153,8 @@ class _Audit:
 
     def _turn(self, turn: Turn, replay: Replay) -> None:
         given, recorded = turn.given, turn.messages
+        if isinstance(given, RuleSaid) and given.request_id in replay.rule_asked:
+            self._rule_said(turn, given, replay.rule_asked[given.request_id], replay.policy)
         reproduced = replay.turn(given, turn.now_ns, forged(recorded) if self._scope.signed else ())
         self._inputs[describe.kind_of_input(given)] += 1
         self._end_ns = turn.now_ns
@@ -145,6 +166,28 @@ class _Audit:
             self._difference(turn, "course", surprise.recorded, surprise.reproduced)
         for pair in differing(recorded, reproduced, self._scope, cut=turn.cut):
             self._different(turn, pair)
+
+    def _rule_said(self, turn: Turn, said: RuleSaid, asked: AskRule, policy: Policy) -> None:
+        self._rule_answers.append(said.request_id)
+        if self._rule is None:
+            return
+        anew, failed = self._rule(asked.start_enu, asked.goal_enu, policy)
+        if anew != said.refusal and not (failed and said.failed):
+            self._difference(turn, "own rule", said.refusal or "permits", anew or "permits")
+
+    def _rule_noted(self, replay: Replay) -> None:
+        """What of the own rule was done again, and what was not."""
+        unanswered = sorted(set(replay.rule_asked) - set(self._rule_answers))
+        if self._rule_answers and self._rule is None:
+            self._result.notes.append(
+                f"the answers of the operator's own rule on {_requests(self._rule_answers)} were "
+                "taken from the record, and not reproduced: --verifier FILE asks it again"
+            )
+        elif self._rule is not None:
+            asked = f"was asked again on {_requests(self._rule_answers)}"
+            self._result.notes.append(f"the own rule {asked if self._rule_answers else 'had none'}")
+        if unanswered:
+            self._result.notes.append(f"the own rule never answered on {_requests(unanswered)}")
 
     def _different(self, turn: Turn, pair: Pair) -> None:
         one = pair[0] or pair[1]
@@ -217,6 +260,10 @@ class _Audit:
             f"{what} between {since_s:.3f} s and {until_s:.3f} s: what comes after that cannot be "
             "audited"
         )
+
+
+def _requests(numbers: Sequence[int]) -> str:
+    return f"request{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
 
 
 def scope_of(recorded_in: str, audited_in: str, *, same_version: bool) -> Scope:

@@ -29,6 +29,7 @@ from gcs.session.inputs import (
     OperatorNoise,
     RecorderChanged,
     RecorderGrew,
+    RuleSaid,
     SignalCame,
     SimGone,
     SimLine,
@@ -66,6 +67,8 @@ def kind_of_input(given: Given) -> str:
             return "MAVLink clients that came and went"
         case FileRead() | FileWritten():
             return "files"
+        case RuleSaid():
+            return "answers of the operator's own rule"
         case LinkEvent():
             return "links' news"
         case RecorderChanged() | RecorderGrew() | DiskLow() | RecorderTurn():
@@ -107,6 +110,8 @@ def told_input(given: Given) -> str:
             return f"{path}: {size}"
         case FileWritten(_, path, error):
             return f"{path}: {error or 'written'}"
+        case RuleSaid(request_id, refusal):
+            return f"the own rule on request {request_id}: {refusal or 'permitted'}"
         case SimLine(text):
             return f"the simulator printed {_short(text)!r}"
         case SimGone(exit_code):

@@ -11,8 +11,8 @@ from gcs.audit.keys import RecordedKey, keys_of
 from gcs.audit.messages import Attachments, Stored, Tape
 from gcs.audit.turns import Given, RecorderTurn, Unreadable
 from gcs.record.writer import Recorder
-from gcs.session.effects import Effect, Finish, ReadFile, Record, WriteFile
-from gcs.session.inputs import FileRead, FileWritten, Input
+from gcs.session.effects import AskRule, Effect, Finish, ReadFile, Record, WriteFile
+from gcs.session.inputs import FileRead, FileWritten, Input, RuleSaid
 from gcs.station.session import Session
 from gcs.vehicle.record_items import FaultKept, Start
 
@@ -33,8 +33,11 @@ class Replay:
         self._recorder = Recorder.without_file(self._tape, start.start_ns)
         self._key = RecordedKey()
         keys = keys_of(start.setup.config, self._key)
+        self.policy = start.setup.policy
         self._session = Session(start.setup, start.start_ns, keys)
         self._asked: list[tuple[type, int, str]] = []
+        self.rule_asked: dict[int, AskRule] = {}
+        """Questions for the operator's own rule that have no answer yet, by request."""
         self._finished = False
         self.surprises: list[Surprise] = []
 
@@ -70,6 +73,9 @@ class Replay:
             self._surprise("the session went on", "the session has ended")
         if isinstance(given, FileRead | FileWritten):
             self._answered(given)
+        elif isinstance(given, RuleSaid) and given.request_id not in self.rule_asked:
+            asked_of = f"the own rule was asked about request {given.request_id}"
+            self._surprise(asked_of, "it was not")
         try:
             effects = self._session.handle(given, now_ns)
         except Exception:  # noqa: BLE001 - as in the loop: what raised there may raise here
@@ -114,6 +120,8 @@ class Replay:
                     self._asked.append((FileRead, token, path))
                 case WriteFile(token, path):
                     self._asked.append((FileWritten, token, path))
+                case AskRule(request_id):
+                    self.rule_asked[request_id] = effect
                 case Finish():
                     self._finished = True
                 case _:

@@ -58,6 +58,8 @@ class Code(StrEnum):
     OTHER_VEHICLE = "OTHER_VEHICLE"
     PREFLIGHT = "PREFLIGHT"
     NOT_ON_BOARD = "NOT_ON_BOARD"
+    OWN_RULE = "OWN_RULE"
+    OWN_RULE_FAILED = "OWN_RULE_FAILED"
 
 
 @dataclass(frozen=True, slots=True)

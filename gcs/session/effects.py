@@ -10,6 +10,7 @@ from typing import TypeAlias
 import msgspec
 
 from gcs import ipc
+from gcs.frames import Vec3
 from gcs.report import RecordItem
 
 EVERYONE = 0
@@ -51,6 +52,15 @@ class WriteFile(msgspec.Struct, frozen=True, gc=False):
     data: bytes
 
 
+class AskRule(msgspec.Struct, frozen=True):
+    """Ask the operator's own rule whether the vehicle may fly from `start_enu` to `goal_enu`
+    (metres).  The answer is a `RuleSaid`; none may come."""
+
+    request_id: int
+    start_enu: Vec3
+    goal_enu: Vec3
+
+
 class ClientVerified(msgspec.Struct, frozen=True, gc=False):
     """The first frame with a good signature was taken of the MAVLink client on that link: from now
     on it has one of the places of those who have the key."""
@@ -82,6 +92,7 @@ Effect: TypeAlias = (
     | ShowTopics
     | ReadFile
     | WriteFile
+    | AskRule
     | ClientVerified
     | LeaveOutPeer
     | Finish

@@ -133,6 +133,17 @@ class FileWritten:
 
 
 @dataclass(frozen=True, slots=True)
+class RuleSaid:
+    """The answer to `AskRule`: None permits, a sentence refuses.  `failed`: the rule itself went
+    wrong, and `refusal` says how.  `printed` is what it printed meanwhile."""
+
+    request_id: int
+    refusal: str | None
+    failed: bool = False
+    printed: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class RecorderChanged:
     """The recorder failed or came back.  `path` is the file that is being written, if any."""
 
@@ -190,6 +201,7 @@ OtherInput: TypeAlias = (
     | SignalCame
     | FileRead
     | FileWritten
+    | RuleSaid
     | RecorderChanged
     | RecorderGrew
     | DiskLow
@@ -215,6 +227,7 @@ TAGS: Final[Mapping[type[Input], str]] = MappingProxyType(
         SignalCame: "SignalCame",
         FileRead: "FileRead",
         FileWritten: "FileWritten",
+        RuleSaid: "RuleSaid",
         RecorderChanged: "RecorderChanged",
         RecorderGrew: "RecorderGrew",
         DiskLow: "DiskLow",

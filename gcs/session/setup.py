@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import msgspec
+
 from gcs.config import StationConfig
 from gcs.gate.policy.policy import Policy
 
@@ -27,3 +29,5 @@ class Setup:
     in the last digit."""
     client_ports: tuple[str, ...] = ()
     """Where MAVLink clients reach the vehicle through this station, a line each."""
+    rule_text: str | msgspec.UnsetType = msgspec.UNSET
+    """The source of the operator's own rule; unset, there is none, and nothing in the record."""

@@ -17,6 +17,7 @@ from gcs import ipc
 from gcs.resources import MissionNotFoundError, find
 from gcs.session.effects import (
     EVERYONE,
+    AskRule,
     ClientVerified,
     Effect,
     Emit,
@@ -49,6 +50,7 @@ from gcs.shell.datagram_runs import pieces, runs
 from gcs.shell.operator_sockets import OperatorSockets
 from gcs.shell.pipes import LineSink, LineSource
 from gcs.shell.recording import Recording
+from gcs.shell.rule_process import RuleProcess
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 from gcs.shell.sockets import Link
@@ -105,9 +107,11 @@ class Loop:
         others: OperatorSockets | None = None,
         on_snapshot: Callable[[ipc.Snapshot], None] = lambda _: None,
         client_ports: ClientPorts | None = None,
+        rule: RuleProcess | None = None,
     ) -> None:
         """`operator` and `screen` are the pipes of the operator who started the station, `others`
         everybody else, `client_ports` where others speak MAVLink with the vehicle through it.
+        `rule` is the operator's own.
         `on_snapshot` is called with each one, and must not wait."""
         self._core = core
         self._clock = clock
@@ -120,6 +124,7 @@ class Loop:
         self._others = others
         self._on_snapshot = on_snapshot
         self._client_ports = client_ports
+        self._rule = rule
         self._topics = TopicStream(recording, self._tell)
         self._signals_fd, self._operator_fd = signals.fileno(), operator.fileno()
         self._operator_open = True
@@ -180,6 +185,8 @@ class Loop:
             self._read_operator()
         if self._sim_open and self._sim is not None and self._sim.lines in readable:
             self._read_sim(self._sim)
+        if self._rule is not None and self._rule.lines in readable:
+            self._read_rule(self._rule)
         self._wake_if_due()
         self._read_operators(readable, writable)
 
@@ -203,6 +210,8 @@ class Loop:
             sources.append(self._operator_fd)
         if self._sim_open and self._sim is not None:
             sources.append(self._sim.lines)
+        if self._rule is not None:
+            sources.append(self._rule.lines)
         sinks: list[Source] = [self._screen] if self._screen.waiting else []
         others = self._others
         self._busy = False
@@ -292,6 +301,13 @@ class Loop:
             self._sim_open = False
             self._feed(SimGone(sim.ended()))
 
+    def _read_rule(self, rule: RuleProcess) -> None:
+        """Once it has ended, no question has an answer any more, and the session refuses each."""
+        for said in rule.answers():
+            self._feed(said)
+        if rule.lines.ended:
+            self._rule = None
+
     def _feed(self, given: Input) -> None:
         """One input with all its effects; then whatever they lead back to."""
         if self._finish is not None:
@@ -360,6 +376,8 @@ class Loop:
                 return _read(token, path)
             case WriteFile(token, path, data):
                 return _write(token, path, data)
+            case AskRule() if self._rule is not None:
+                self._rule.ask(effect)
             case ClientVerified(link) if self._client_ports is not None:
                 self._client_ports.verify(link, now_ns)
             case LeaveOutPeer(link, data, silent_ns):

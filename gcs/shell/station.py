@@ -42,6 +42,7 @@ from gcs.shell.loop import Loop
 from gcs.shell.operator_sockets import OperatorSockets
 from gcs.shell.pipes import LineSink, LineSource
 from gcs.shell.recording import Recording
+from gcs.shell.rule_process import RuleError, RuleProcess
 from gcs.shell.signals import SignalSource
 from gcs.shell.sim import SimProcess
 from gcs.shell.stations import Unsafe
@@ -80,6 +81,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
     keys = _read_keys(setup)
     clock = Clock(setup.speedup)
     with ExitStack() as opened:
+        rule, rule_text = _start_rule(setup, policy, opened)
         links = _open_links(setup, opened)
         client_ports = _open_client_ports(setup, policy, links, opened)
         recording = _open_recording(setup, clock)
@@ -101,6 +103,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
                 waiting=frozenset(n for n, link in enumerate(links) if link.endpoint.listens),
                 environment=environment(),
                 client_ports=client_ports.describe() if client_ports else (),
+                rule_text=rule_text,
             ),
             clock.now_ns(),
             keys,
@@ -122,6 +125,7 @@ def _run(setup: StationConfig, screen: LineSink, signals: SignalSource) -> int:
             operators,
             local.describe if local else lambda _: None,
             client_ports,
+            rule,
         ).run()
         if session.nothing_heard:
             recording.discard(clock.now_ns())
@@ -146,6 +150,27 @@ def _read_policy(setup: StationConfig) -> tuple[Policy, str]:
         retarget: Literal["refuse", "replace"] = "replace" if setup.clients else "refuse"
         policy = msgspec.structs.replace(policy, retarget=retarget)
     return policy, text
+
+
+def _start_rule(
+    setup: StationConfig, policy: Policy, opened: ExitStack
+) -> tuple[RuleProcess | None, str | msgspec.UnsetType]:
+    """The operator's own rule, and its source for the record."""
+    path = setup.rule_path
+    if isinstance(path, msgspec.UnsetType):
+        return None, msgspec.UNSET
+    try:
+        source = Path(path).read_text(encoding="utf-8")
+        rule = RuleProcess(path, source, policy)
+    except (OSError, UnicodeDecodeError) as error:
+        text = f"{path}: {getattr(error, 'strerror', None) or error}"
+        hint = "--verifier names a Python file with verify(start, goal, policy)"
+        raise CannotStartError(ExitCode.BAD_FILE, text, hint) from error
+    except RuleError as error:
+        hint = "missions/lab3/solutions/my_rule.py is one that works"
+        raise CannotStartError(ExitCode.BAD_FILE, str(error), hint) from error
+    opened.callback(rule.stop)
+    return rule, source
 
 
 def _read_keys(setup: StationConfig) -> Keys:

@@ -132,7 +132,10 @@ def _checked(
         near = separation.why_not(vehicles, owner, request.goal_ned, now_ns)
         if near is not None:
             return announcements.checked(ask, near, goal or near)
-    return announcements.checked(ask, gate.would(request, source_of(operator), now_ns), goal)
+    verdict = gate.would(request, source_of(operator), now_ns)
+    if vehicle.rule is not None and isinstance(request, GoTo) and verdict and not verdict.refusal:
+        verdict = None  # the operator's own rule is asked first, and only once it is sent
+    return announcements.checked(ask, verdict, goal)
 
 
 def _for_each(

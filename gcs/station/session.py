@@ -55,6 +55,7 @@ from gcs.session.inputs import (
     OtherInput,
     RecorderChanged,
     RecorderGrew,
+    RuleSaid,
     SignalCame,
     SimGone,
     SimLine,
@@ -318,6 +319,8 @@ class Session:
                 return [*self._bridge.bridge.flooded(link, dropped)]
             case FileRead() | FileWritten():
                 return self._vehicles.each(lambda each: each.file(given, now_ns))
+            case RuleSaid():
+                return self._vehicles.each(lambda each: each.rule.said(given) if each.rule else [])
             case RecorderChanged():
                 return self._recorder(given)
             case RecorderGrew(size_bytes, free_bytes):

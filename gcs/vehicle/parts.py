@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import msgspec
+
 from gcs.config import StationConfig
 from gcs.gate import inputs
 from gcs.gate.condition import Condition
@@ -25,6 +27,7 @@ from gcs.vehicle.missions.missions import Missions
 from gcs.vehicle.missions.return_places import ReturnPlaces
 from gcs.vehicle.missions.uploaded_fence import FenceOnBoard
 from gcs.vehicle.orbits import Orbits
+from gcs.vehicle.own_rule import OwnRule
 from gcs.vehicle.parameters import settings
 from gcs.vehicle.parameters.failsafes import limits_of
 from gcs.vehicle.parameters.settings import Settings
@@ -75,6 +78,8 @@ class VehicleParts:
         self.missions = Missions(own, times)
         self.readers = Readers(own, times)
         self.orbits = Orbits(times)
+        rule_path = config.rule_path
+        self.rule = None if isinstance(rule_path, msgspec.UnsetType) else OwnRule(rule_path, times)
         self.leg_speed_m_s: float | None = None
         """The most that legs are flown at, where that was asked for."""
         self.returns = ReturnPlaces(own, times, policy)

@@ -87,9 +87,18 @@ def introduction(setup: Setup, start_ns: int) -> list[Effect]:
     return [
         Record(MetadataItem("mavgate", values)),
         Record(AttachmentItem.of_file("policy.toml", setup.policy_text.encode())),
+        *_own_rule(setup),
         Record(InputItem.of("Setup", Start(setup, start_ns))),
         Emit(hello(setup, setup.log_path), FIRST),
     ]
+
+
+def _own_rule(setup: Setup) -> list[Effect]:
+    """Its source, for whoever reads what it refused."""
+    path, text = setup.config.rule_path, setup.rule_text
+    if isinstance(path, msgspec.UnsetType) or isinstance(text, msgspec.UnsetType):
+        return []
+    return [Record(AttachmentItem.of_file(path, text.encode()))]
 
 
 def hello(

@@ -28,6 +28,7 @@ from gcs.session.effects import Record
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.speedup_waits import Times
 from gcs.session.work import (
+    GATE_ANSWERED,
     AskMission,
     AskOrbit,
     AskSpeed,
@@ -274,7 +275,22 @@ class Vehicle(VehicleParts):
     # --------------------------------------------------------------------------------- gate
 
     def ask_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
-        """What its gate answers, and what else follows for the vehicle from such an input."""
+        """What its gate answers, and what else follows for the vehicle from such an input; a go-to
+        is for the operator's own rule first, where there is one."""
+        if self.rule is None:
+            return self._asked_gate(given, now_ns)
+        kept = self.rule.keeps(given, self.gate, now_ns)
+        if kept is not None:
+            return [*kept, GATE_ANSWERED]
+        work: list[Work] = []
+        if isinstance(given, inputs.Tick):
+            permitted, work = self.rule.tick(self.gate, now_ns)
+            if permitted is not None:
+                asked = self._asked_gate(permitted, now_ns)
+                work += [each for each in asked if each is not GATE_ANSWERED]
+        return [*work, *self._asked_gate(given, now_ns), *self.rule.after(self.gate)]
+
+    def _asked_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
         gate = self.port.gate
         before = gate.state
         if isinstance(given, inputs.StreamSeen) and self.telemetry is not None:

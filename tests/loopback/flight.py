@@ -124,6 +124,7 @@ class Flight(Looks):
         self.up, self.down = Air(up, 2 * seed), Air(down, 2 * seed + 1)
         self.finish: effects.Finish | None = None
         self.files: dict[str, bytes] = {}
+        self.rule: Callable[[effects.AskRule], list[inputs.Input]] = lambda _: []
         self.vehicle_silent = False
         self.positions_lost = False
         self.heartbeats_lost = False
@@ -257,6 +258,8 @@ class Flight(Looks):
             case effects.WriteFile(token, path, data):
                 self.files[path] = data
                 return [inputs.FileWritten(token, path)]
+            case effects.AskRule():
+                return self.rule(effect)
             case effects.Finish():
                 self.finish = effect
         return []

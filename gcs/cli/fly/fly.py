@@ -86,6 +86,14 @@ def usual_timeout_s() -> float:
     "--keep", is_flag=True, help="The link lives on when this operator leaves; see gcs stations."
 )
 @with_options(LIVE)
+@click.option(
+    "--verifier",
+    type=UTF8,
+    default="",
+    metavar="FILE",
+    help="Your own rule, in Python: verify(start, goal, policy) returns None, or a sentence that "
+    "refuses. Asked for every go-to that the gate would accept; see missions/lab3.",
+)
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
@@ -100,6 +108,7 @@ def fly(
     keep: bool,
     mission: str,
     live: tuple[str, int] | None,
+    verifier: str,
     plain: bool,
     as_json: bool,
     strict: bool,
@@ -122,7 +131,8 @@ def fly(
         timeout_s=timeout or usual_timeout_s(),
         vehicle=vehicle,
     )
-    config = msgspec.structs.replace(config, keep=keep)
+    rule_path = verifier or msgspec.UNSET
+    config = msgspec.structs.replace(config, keep=keep, rule_path=rule_path)
     if plain and mission:
         raise click.UsageError("--mission is for the keyboard; with --plain type: mission fly FILE")
     mission_path = _mission(mission) if mission else ""

@@ -20,8 +20,10 @@ from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
-    from gcs.audit.audit import AuditResult, Difference
+    from gcs.audit.audit import AuditResult, Difference, OwnRule
     from gcs.audit.files import SessionFiles
+    from gcs.frames import Vec3
+    from gcs.gate.policy.policy import Policy
     from gcs.wire.signing import SecretKey
 
 _PROGRESS_FROM_BYTES = 500_000
@@ -39,6 +41,14 @@ _PROGRESS_FROM_BYTES = 500_000
     metavar="KEYFILE",
     help="Each file must be as `gcs log sign` has signed it with this key.",
 )
+@click.option(
+    "--verifier",
+    type=UTF8,
+    default="",
+    metavar="FILE",
+    help="Run this file, and ask it again what the operator's own rule (gcs fly --verifier) was "
+    "asked. Without it no rule is run: its answers are taken from the record.",
+)
 @click.pass_context
 def audit(
     ctx: click.Context,
@@ -46,6 +56,7 @@ def audit(
     show: int,
     as_json: bool,
     key: str | None,
+    verifier: str,
     last: bool,
 ) -> None:
     """Do again what a station did, from its record, and compare.
@@ -65,9 +76,10 @@ def audit(
     files = files if files and not last else (one_record(next(iter(files), None), last=last),)
     with told(files[0]):
         found = sessions(files)
+    rule = _own_rule(verifier) if verifier else None
     results = []
     for number, session in enumerate(found):
-        result = _audited(session)
+        result = _audited(session, rule)
         if key is not None:
             _check_signatures(session, result, read_key_file(key))
         results.append(result)
@@ -84,7 +96,28 @@ def audit(
     ctx.exit(ExitCode.DONE if good else ExitCode.DIFFERENT)
 
 
-def _audited(session: SessionFiles) -> AuditResult:
+def _own_rule(path: str) -> OwnRule:
+    """The auditor's own file, loaded; never one that a record brings along."""
+    from gcs.shell.rule_child import BadRuleError, Place, judge, load
+    from gcs.shell.rule_process import rule_policy
+
+    try:
+        verify = load(path, Path(path).read_text(encoding="utf-8"))
+    except BadRuleError as error:
+        raise ExitError(ExitCode.BAD_FILE, str(error)) from error
+    except (OSError, UnicodeDecodeError) as error:
+        text = f"{path}: {getattr(error, 'strerror', None) or error}"
+        raise ExitError(ExitCode.BAD_FILE, text) from error
+
+    def rule(start_enu: Vec3, goal_enu: Vec3, policy: Policy) -> tuple[str | None, bool]:
+        start, goal = Place(*start_enu), Place(*goal_enu)
+        answer = judge(verify, path, start, goal, rule_policy(policy))
+        return answer.refusal, answer.failed
+
+    return rule
+
+
+def _audited(session: SessionFiles, rule: OwnRule | None) -> AuditResult:
     from gcs import __version__
     from gcs.audit.audit import audit as audit_session
     from gcs.audit.turns import NoStartError
@@ -94,7 +127,7 @@ def _audited(session: SessionFiles) -> AuditResult:
         try:
             messages = session.messages(progress)
             attachments = session.attachments()
-            result = audit_session(messages, attachments, __version__, environment())
+            result = audit_session(messages, attachments, __version__, environment(), rule)
         except NoStartError as error:
             text = f"{session.paths[0]}: cannot be audited: {error}"
             raise ExitError(ExitCode.BAD_FILE, text, error.hint) from error

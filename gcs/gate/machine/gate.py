@@ -206,16 +206,20 @@ class Gate:
             self._tick()
         return [self._permitted(draft) for draft in step.out]
 
-    def would(self, request: Request, source: str, now_ns: int) -> Verdict | None:
+    def would(
+        self, request: Request, source: str, now_ns: int, *, at_once: bool = False
+    ) -> Verdict | None:
         """The verdict that a request of `source` would get now; None where it would have to wait
-        for one.
+        for one.  A go-to waits for its tick: it is tried as well, but where `at_once`.
 
         A copy of the gate is asked, through the same table, and forgotten: nothing is changed, and
         nothing of it is sent.
         """
         trial = Gate.resumed(self._step.policy, self.memory, now_ns, self._table)
         asked = Requested(TRIAL, source, request)
-        effects = [*trial.handle(asked, now_ns), *trial.handle(Tick(0), now_ns)]
+        effects = trial.handle(asked, now_ns)
+        if not at_once:
+            effects += trial.handle(Tick(0), now_ns)
         verdicts = (each for each in effects if isinstance(each, Verdict))
         return next((each for each in verdicts if each.request_id == TRIAL), None)
 

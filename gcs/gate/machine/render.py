@@ -6,7 +6,7 @@ in the tests notices it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from gcs.gate.machine.events import REQUESTS, Event
 from gcs.gate.machine.rows.row import BACK, BACK_STATES, COLUMNS, STAY, Branch, Cell
@@ -38,12 +38,13 @@ def _state(table: Table, state: State) -> Iterator[str]:
             yield from _wrapped(f"  {heading}: ", [event.value for event in events])
 
 
-def short(state: State, table: Table = TABLE) -> str:
-    """What leads out of one state: its events, and the states that may follow, in words."""
+def short(state: State, table: Table = TABLE, among: Collection[State] = COLUMNS) -> str:
+    """What leads out of one state to those `among`: its events, and what may follow, in words."""
     lines = [f"{state.name} = {state.value}    streams {STREAMS[state].value}"]
     for event in Event:
         cell = table[state, event]
-        ways = list(dict.fromkeys(filter(None, map(_way, cell))))
+        leads = [branch for branch in cell if branch.to is STAY or {*_targets(branch)} & {*among}]
+        ways = list(dict.fromkeys(filter(None, map(_way, leads))))
         if ways:
             refuses = " (or refused)" if any(branch.refuse is not None for branch in cell) else ""
             lines.append(f"  {event.value:<18} {' or '.join(ways)}{refuses}")
@@ -101,8 +102,8 @@ def _wrapped(head: str, words: list[str], width: int = 98) -> Iterator[str]:
     yield line.rstrip()
 
 
-def dot(table: Table = TABLE) -> str:
-    """A directed graph: one edge for each pair of states, labelled with its events.
+def dot(table: Table = TABLE, among: Collection[State] = COLUMNS) -> str:
+    """A directed graph of the states `among`: an edge for each pair, labelled with its events.
 
     States that send setpoints have a heavy frame.  An edge is dashed where an event that is not
     a request takes it.
@@ -112,7 +113,7 @@ def dot(table: Table = TABLE) -> str:
         for branch in cell:
             for after in _targets(branch):
                 events = edges.setdefault((state, after), [])
-                if after is not state and event not in events:
+                if after is not state and event not in events and {state, after} <= {*among}:
                     events.append(event)
     lines = [
         "digraph gate {",
@@ -120,7 +121,7 @@ def dot(table: Table = TABLE) -> str:
         '  node [shape=box, style=rounded, fontname="Helvetica"];',
         '  edge [fontname="Helvetica", fontsize=9];',
     ]
-    for state in COLUMNS:
+    for state in among:
         heavy = ", penwidth=2" if STREAMS[state] is not Streams.NOTHING else ""
         lines.append(f'  {state.name} [label="{state.name}\\n{state.value}"{heavy}];')
     for (before, after), events in sorted(edges.items()):

@@ -158,6 +158,18 @@ def test_one_state_is_printed_in_a_line_an_event_with_what_follows() -> None:
     assert all(len(render.short(state).splitlines()) < 45 for state in State)
 
 
+def test_the_labs_states_are_printed_without_all_that_leads_elsewhere() -> None:
+    """HOVERING, VERIFYING and MOVING, as its state machine has them."""
+    shown = CliRunner().invoke(fsa, ["--lab"]).output.splitlines()
+    assert [line.split()[0] for line in shown if "=" in line] == ["HOVERING", "VERIFYING", "MOVING"]
+    assert "  goal cleared       -> MOVING" in shown
+    assert "  tick               -> VERIFYING or -> HOVERING" in shown
+    assert not any("HOLDING" in line for line in shown)
+    drawn = CliRunner().invoke(fsa, ["--lab", "--format", "dot"]).output
+    assert "VERIFYING -> MOVING" in drawn
+    assert "HOLDING" not in drawn
+
+
 def test_a_changed_cell_prints_differently() -> None:
     changed = {**TABLE, (State.MOVING, Event.ABORT): (Branch(),)}
     assert render.text(changed) != render.text()

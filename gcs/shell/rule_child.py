@@ -1,0 +1,139 @@
+"""The operator's own rule, run in a process of its own: `python -m gcs.shell.rule_child`.
+
+The first line of standard input is `{"path", "source", "policy"}`, each line after it a question;
+every line has one answer on standard output, the first one too.  The rule is a file with
+
+    def verify(start, goal, policy):
+        ...
+
+`start` and `goal` are `Place`s, `policy` is the station's policy as a dict, with the keys of its
+file.  What it returns permits (None) or refuses (a sentence).  Whatever else happens refuses.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import signal
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from pathlib import PurePath
+from typing import Any, NamedTuple, TypeAlias
+
+LIMIT_S = 0.3
+"""How long `verify` may take, where the system has timers for a process; the station itself waits
+a little longer."""
+MOST_LETTERS = 2_000
+"""Of a refusal, and of what is printed at one question."""
+
+
+class Place(NamedTuple):
+    """A position in metres east, north and up of the origin of the vehicle's local frame."""
+
+    east_m: float
+    north_m: float
+    up_m: float
+
+
+class Answer(NamedTuple):
+    """None permits.  `failed`: the rule went wrong, and `refusal` says how."""
+
+    refusal: str | None
+    failed: bool = False
+    printed: str = ""
+
+
+Verify: TypeAlias = Callable[[Place, Place, dict[str, Any]], object]
+
+
+class BadRuleError(Exception):
+    """The file is no rule: `file:line: what is wrong`."""
+
+
+def load(path: str, source: str) -> Verify:
+    """Run the file, and find its `verify`.  Raises BadRuleError."""
+    names: dict[str, Any] = {"__name__": "own_rule", "__file__": path}
+    try:
+        exec(compile(source, path, "exec"), names)
+    except SyntaxError as error:
+        raise BadRuleError(f"{path}:{error.lineno}: {error.msg}") from error
+    except (Exception, SystemExit) as error:
+        raise BadRuleError(_where(error, path, path)) from error
+    verify = names.get("verify")
+    if not callable(verify):
+        raise BadRuleError(f"{path}: has no function verify(start, goal, policy)")
+    found: Verify = verify
+    return found
+
+
+def judge(verify: Verify, path: str, start: Place, goal: Place, policy: dict[str, Any]) -> Answer:
+    """The rule's answer to one question; an exception, or anything but a sentence, refuses."""
+    printed = io.StringIO()
+    failed, refusal = False, None
+    try:
+        with _limited(), contextlib.redirect_stdout(printed):
+            said = verify(start, goal, policy)
+        if said is not None:
+            failed = not (isinstance(said, str) and said.strip())
+            name = PurePath(path).name
+            wrong = f"{name}: verify returned {said!r}, neither None nor a sentence"
+            refusal = wrong if failed else str(said)
+    except BaseException as error:  # noqa: BLE001 - whatever it raises, SystemExit too, refuses
+        failed, refusal = True, _where(error, path, PurePath(path).name)
+    shortened = None if refusal is None else " ".join(refusal.split())[:MOST_LETTERS]
+    return Answer(shortened, failed, printed.getvalue()[:MOST_LETTERS])
+
+
+class _TooSlowError(BaseException):
+    """No `except Exception` of a rule keeps it."""
+
+
+@contextlib.contextmanager
+def _limited() -> Iterator[None]:
+    if sys.platform == "win32":
+        yield
+        return
+
+    def late(_signal: int, _frame: object) -> None:
+        raise _TooSlowError(f"took longer than {LIMIT_S:g} s")
+
+    handler = signal.signal(signal.SIGALRM, late)
+    timer = signal.setitimer(signal.ITIMER_REAL, LIMIT_S)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, *timer)
+        signal.signal(signal.SIGALRM, handler)
+
+
+def _where(error: BaseException, path: str, name: str) -> str:
+    """`my_rule.py:7: ZeroDivisionError: division by zero`, by the last line of the file itself."""
+    lines = [at.lineno for at in traceback.extract_tb(error.__traceback__) if at.filename == path]
+    place = f"{name}:{lines[-1]}" if lines else name
+    kind = "" if isinstance(error, _TooSlowError) else f"{type(error).__name__}: "
+    return f"{place}: {kind}{error}"
+
+
+def main() -> None:
+    """Until standard input ends, as it does with the station."""
+    answers, sys.stdout = sys.stdout, sys.stderr
+    begin = json.loads(sys.stdin.readline())
+    path, policy = begin["path"], begin["policy"]
+    try:
+        verify = load(path, begin["source"])
+    except BadRuleError as error:
+        print(json.dumps({"wrong": str(error)}), file=answers, flush=True)
+        return
+    print(json.dumps({"wrong": ""}), file=answers, flush=True)
+    for line in sys.stdin:
+        asked = json.loads(line)
+        start, goal = Place(*asked["start_enu"]), Place(*asked["goal_enu"])
+        answer = judge(verify, path, start, goal, policy)
+        said = {"request_id": asked["request_id"], **answer._asdict()}
+        print(json.dumps(said), file=answers, flush=True)
+
+
+if __name__ == "__main__":
+    main()
