@@ -1,7 +1,8 @@
 """A node of one's own: it listens to the state, and publishes the next corner of a square when the
 vehicle hovers.  It stops the flight where a leg takes longer than 10 s.
 
-Run it beside `gcs fly --sim --policy lab`, once the vehicle hovers.
+Run it beside `gcs fly --sim --policy lab`, once the vehicle hovers.  Whoever was in control and left,
+has left it held: it is resumed first.
 """
 
 import time
@@ -14,6 +15,8 @@ LONGEST_S = 10.0
 
 def main() -> None:
     with gcs.connect(take_control=True, name="my_node") as station:
+        if station.state == "HOLDING":
+            station.resume()
         for corner in CORNERS:
             leg, began_s, before = station.goto(*corner, wait=False), time.monotonic(), ""
             while leg.state == "running":
