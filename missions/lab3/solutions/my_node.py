@@ -1,8 +1,8 @@
 """A node of one's own: it listens to the state, and publishes the next corner of a square when the
 vehicle hovers.  It stops the flight where a leg takes longer than 10 s.
 
-Run it beside `gcs fly --sim --policy lab`, once the vehicle hovers.  Whoever was in control and left,
-has left it held: it is resumed first.
+Run it beside `gcs fly --sim --policy lab`, once the vehicle hovers.  One that another program has
+left is held: it is resumed first.
 """
 
 import time
