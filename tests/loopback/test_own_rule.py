@@ -67,6 +67,14 @@ def test_it_is_not_asked_for_what_the_gate_refuses() -> None:
     assert len(asked) == 1
 
 
+def test_a_rule_that_permits_everything_changes_no_verdict() -> None:
+    free, (under, _) = Flight(policy=POLICIES["lab"]).hovering(1.0), ruled()
+    under.rule = lambda asked: [inputs.RuleSaid(asked.request_id, None)]
+    for goal_enu in ((2.0, 0.0, 1.0), (5.01, 0.0, 1.0), (0.0, 0.0, 2.5), (-1.0, 4.9, 0.5)):
+        without, within = free.goto(*goal_enu), under.goto(*goal_enu)
+        assert free.done(without) == under.done(within)
+
+
 def test_no_answer_refuses_and_a_late_one_is_for_nobody() -> None:
     flight, _ = ruled()
     flight.rule = lambda _: []
