@@ -75,5 +75,6 @@ if not TYPE_CHECKING:
         return getattr(import_module(_HOME.get(name, "gcs.operator.failures")), name)
 
     def __dir__() -> list[str]:
-        """With what `__getattr__` gives: `dir(gcs)` and Tab in a shell show the whole library."""
-        return sorted({*globals(), *__all__})
+        """With what `__getattr__` gives: `dir(gcs)` and Tab in a shell show the whole library, and
+        nothing of how it is loaded."""
+        return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

@@ -340,7 +340,6 @@ class OrbitEvent(msgspec.Struct, frozen=True, tag="orbit", tag_field="type"):
     turns: float  # that were flown
     circling: bool  # false: still on the way to the circle
     centre_lat_lon_amsl: tuple[float, float, float] | None = None  # null without an origin
-    note: str = ""  # what is flown otherwise than it was asked for
     vehicle: int = 0  # system id
 
 

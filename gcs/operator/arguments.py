@@ -5,15 +5,47 @@ Each function takes the method's name and one argument under its own name, and r
 
 from __future__ import annotations
 
+import functools
+import inspect
 import math
 import os
-from typing import SupportsFloat
+import reprlib
+from collections.abc import Callable
+from types import FunctionType
+from typing import ParamSpec, SupportsFloat, TypeVar
 
 from gcs.frames import Vec3
 from gcs.ipc import Maybe3
 from gcs.operator.failures import BadArgument
 
 Given = float | None
+P = ParamSpec("P")
+R = TypeVar("R")
+T = TypeVar("T")
+
+
+def called_right(function: Callable[P, R]) -> Callable[P, R]:
+    """Of a call that leaves an argument out, or has one too many: BadArgument, not a bare
+    TypeError."""
+    signature = inspect.signature(function)
+
+    @functools.wraps(function)
+    def call(*given: P.args, **named: P.kwargs) -> R:
+        try:
+            signature.bind(*given, **named)
+        except TypeError as error:
+            raise BadArgument(f"{function.__name__}: {error}") from None
+        return function(*given, **named)
+
+    return call
+
+
+def all_called_right(kind: type[T]) -> type[T]:
+    """The same of every public method of a class itself."""
+    for name, member in [*vars(kind).items()]:
+        if isinstance(member, FunctionType) and not name.startswith("_"):
+            setattr(kind, name, called_right(member))
+    return kind
 
 
 def number(method: str, **given: object) -> Given:
@@ -111,4 +143,11 @@ def _number(method: str, given: dict[str, object]) -> float:
 
 def _bad(method: str, given: dict[str, object], wanted: str) -> BadArgument:
     ((name, value),) = given.items()
-    return BadArgument(method, name, wanted, value)
+    return bad(method, name, wanted, value)
+
+
+def bad(method: str, name: str, wanted: str, value: object) -> BadArgument:
+    """What is wrong with one argument."""
+    sentence = f"{method}: {name} must be {wanted}, not {reprlib.repr(value)}"
+    number = value if isinstance(value, int | float) and abs(value) < 1e300 else None
+    return BadArgument(sentence, {} if number is None else {name: float(number)})

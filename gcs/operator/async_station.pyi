@@ -155,7 +155,7 @@ class AsyncStation:
         speed_m_s: float,
         centre: tuple[float, float, float] | None = None,
         *,
-        turns: float = 0.0,
+        turns: float = 1.0,
         nose: str = "centre",
         wait: bool | None = None,
         timeout_s: float | None = None,

@@ -9,11 +9,11 @@ import msgspec
 
 from gcs.config import SimConfig, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
-from gcs.operator import joined
+from gcs.operator import arguments, joined
 from gcs.operator.chosen_vehicle import ChosenVehicle
 from gcs.operator.client import StationClient, Way
 from gcs.operator.differences import differences, hint, sentence
-from gcs.operator.failures import BadArgument, CannotConnect, Disconnected, StationDiffers
+from gcs.operator.failures import CannotConnect, Disconnected, StationDiffers
 from gcs.operator.station import Station
 from gcs.resources import policy_path
 from gcs.shell.stations import Description
@@ -23,6 +23,7 @@ SETTLE_WAIT_S = 3.0
 START_WAIT_S = 30.0
 
 
+@arguments.called_right
 def connect(
     link: str | Sequence[str] | None = None,
     *,
@@ -147,7 +148,7 @@ def _check(given: dict[str, object]) -> None:
         wanted, _, where = str(error).rpartition(" - at `$.")
         name = where.rstrip("`").partition("[")[0]
         wanted = wanted.removeprefix("Expected ").partition(", got")[0].replace("`", "")
-        raise BadArgument("connect", name, wanted, given[name]) from None
+        raise arguments.bad("connect", name, wanted, given[name]) from None
 
 
 def _running(links: Sequence[str]) -> Description | None:

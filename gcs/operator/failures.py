@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import reprlib
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -18,7 +17,8 @@ class GcsError(Exception):
     """What this library raises.
 
     `code` is a word for programs, `sentence` what happened, `hint` what to do where that is known,
-    `numbers` what it was decided on, with the unit at the end of each name.
+    `numbers` what it was decided on, with the unit at the end of each name; empty where no number
+    counted, such as for a vehicle that is held, or not armed.
     """
 
     def __init__(
@@ -99,9 +99,10 @@ class NotHeard(GcsError, TimeoutError):  # noqa: N818
 
 
 class BadArgument(GcsError, ValueError, TypeError):  # noqa: N818
-    """An argument is not what the method takes: nothing was asked for."""
+    """An argument is missing, unknown or not what the method takes: nothing was asked for.
 
-    def __init__(self, method: str, name: str, wanted: str, value: object) -> None:
-        sentence = f"{method}: {name} must be {wanted}, not {reprlib.repr(value)}"
-        number = value if isinstance(value, int | float) and abs(value) < 1e300 else None
-        super().__init__("BAD_ARGUMENT", sentence, {} if number is None else {name: float(number)})
+    `numbers` has the argument where it is a number.
+    """
+
+    def __init__(self, sentence: str, numbers: Mapping[str, float | None] = _NONE) -> None:
+        super().__init__("BAD_ARGUMENT", sentence, numbers)

@@ -20,6 +20,7 @@ class Asking(Protocol):
     def wait_until(self, done: Callable[[], bool], timeout_s: float | None) -> None: ...
 
 
+@arguments.all_called_right
 class Operation:
     """An accepted request, which may still be under way."""
 

@@ -27,7 +27,7 @@ from gcs.gate.refusal import Code
 from gcs.operator import arguments, preflight
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.conversation import Conversation
-from gcs.operator.failures import BadArgument, Disconnected, NotCompleted, NotHeard, Refused
+from gcs.operator.failures import Disconnected, NotCompleted, NotHeard, Refused
 from gcs.operator.operation import Operation
 from gcs.operator.requests.flights import Flights, goto_of
 from gcs.operator.requests.missions import Missions
@@ -42,6 +42,7 @@ KEPT_EVENTS = 10_000
 """Of an `events()` that is not read; the oldest are forgotten."""
 
 
+@arguments.all_called_right
 class Station(Flights, Missions, Parameters):
     """A connected station.  Made by `connect`; a `with` block leaves it at its end.
 
@@ -184,7 +185,8 @@ class Station(Flights, Missions, Parameters):
                 return self._messages[message]
             if self._unknown_messages:
                 del self._subscribed[message]
-                raise BadArgument("telemetry", "message", "the name of a MAVLink message", message)
+                wanted = "the name of a MAVLink message"
+                raise arguments.bad("telemetry", "message", wanted, message)
         raise NotHeard(f"no {message} was heard within {wait_s:g} s", wait_s)
 
     def events(self) -> Iterator[ipc.Event]:

@@ -41,6 +41,7 @@ class Streaming(Protocol):
     def wait_until(self, done: Callable[[], bool], timeout_s: float | None) -> None: ...
 
 
+@arguments.all_called_right
 class Stream:
     """Made by `Station.stream`; a `with` block begins it, and ends it in good order.
 

@@ -60,7 +60,7 @@ class Asked:
 class Orbit:
     """A level circle in local NED.  `way` is 1 clockwise and -1 counter-clockwise, seen from above;
     `turn_rad` is how far it is flown, None for ever; `heading_rad` is the nose's when it was asked
-    for; `note` tells what is flown otherwise than asked for."""
+    for."""
 
     centre_ned: Vec3
     radius_m: float
@@ -69,7 +69,6 @@ class Orbit:
     turn_rad: float | None
     nose: Nose
     heading_rad: float | None
-    note: str = ""
 
     def point_ned(self, bearing_rad: float) -> Vec3:
         """Of the circle, seen from its centre; clockwise from north."""
@@ -117,12 +116,13 @@ def orbit_of(
         rules.max_speed_h_m_s * BELOW,
         math.sqrt(min(CENTRIPETAL_M_S2, rules.max_a_m_s2) * abs(radius_m)),
     )
-    note = ""
     if asked.speed_m_s is not None and speed_m_s > fastest_m_s / BELOW:
-        note = (
-            f"flown at {fixed(fastest_m_s, 1)} m/s, not {fixed(speed_m_s, 1)}: the most that a "
-            f"circle of {fixed(abs(radius_m), 1)} m and the policy allow"
+        numbers = (("speed_m_s", speed_m_s), ("max_speed_m_s", fastest_m_s), ("radius_m", radius_m))
+        sentence = (
+            f"{fixed(speed_m_s, 1)} m/s: a circle of {fixed(abs(radius_m), 1)} m and the policy "
+            f"allow no more than {fixed(fastest_m_s, 1)} m/s"
         )
+        return Refusal(Code.POLICY, sentence, numbers)
     nose = asked.nose or (before.nose if before is not None else Nose.CENTRE)
     return Orbit(
         centre_ned,
@@ -132,7 +132,6 @@ def orbit_of(
         turns * math.tau if turns > 0.0 else None,
         nose,
         heading_rad,
-        note,
     )
 
 

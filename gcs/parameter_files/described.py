@@ -39,6 +39,20 @@ class Description(msgspec.Struct, frozen=True, rename="camel"):
     values: list[Choice] = []
     bitmask: list[Bit] = []
 
+    def beyond(self, value: float) -> tuple[str, dict[str, float | None]]:
+        """Why the value is not within its bounds, and the numbers; nothing where it is."""
+        low, high = self.min, self.max
+        if (low is None or value >= low) and (high is None or value <= high):
+            return "", {}
+        least = "" if low is None else f" from {_text(low)}"
+        most = "" if high is None else f" to {_text(high)}"
+        told = f"the vehicle's own bounds are{least}{most}"
+        return f"{self.name}: {_text(value)} {self.units}".rstrip() + f": {told}", {
+            "value": value,
+            "min": low,
+            "max": high,
+        }
+
 
 class _File(msgspec.Struct):
     parameters: list[Description]

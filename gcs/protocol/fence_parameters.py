@@ -31,6 +31,13 @@ HOLD: Final = 5.0
 """COM_OBL_RC_ACT."""
 
 
+TAKEN_OFF: Final[Mapping[str, tuple[str, ...]]] = {
+    "px4": ("GF_MAX_HOR_DIST 0", "GF_MAX_VER_DIST 0"),
+    "ardupilot": ("FENCE_ENABLE 0",),
+}
+"""What takes circle and ceiling off: no clearing of an uploaded fence does."""
+
+
 @dataclass(frozen=True, slots=True)
 class KeptFence:
     """A cylinder about home, in metres; whether there are uploaded zones beside it; what a breach

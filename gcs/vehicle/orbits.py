@@ -172,7 +172,6 @@ class Orbits:
             nose=orbit.nose.value,
             turns=flown.guidance.swept_rad / math.tau,
             circling=flown.guidance.circling,
-            note=orbit.note,
             vehicle=telemetry.sysid,
         )
         return [Emit(event, flown.operator)]
@@ -193,7 +192,7 @@ def _in_words(orbit: Orbit) -> str:
     way = "clockwise" if orbit.way > 0 else "counter-clockwise"
     return (
         f"a circle of {fixed(orbit.radius_m, 1)} m about {plain_enu(centre)}, {way}, at "
-        f"{fixed(orbit.speed_m_s, 1)} m/s{'; ' + orbit.note if orbit.note else ''}"
+        f"{fixed(orbit.speed_m_s, 1)} m/s"
     )
 
 

@@ -75,7 +75,6 @@ class Dialogue:
     """Of messages that are not acknowledged."""
     _orbit_from: From | None = None
     """Who of this client has asked for the last orbit."""
-    _orbit_note: str = ""
     _streams_from: From | None = None
     """Who of this client sent the last sample of a stream."""
 
@@ -294,13 +293,8 @@ class Dialogue:
         """How its orbit is flown, as a PX4 in its Orbit mode tells it: QGroundControl draws it."""
         if self._orbit_from is None:
             return []
-        to = self._orbit_from
-        told: list[BridgeEffect] = []
-        if event.note and event.note != self._orbit_note:
-            told += self.text(to, Level.INFO, f"orbit: {event.note}", now_ns)
-        self._orbit_note = event.note
-        status = orbit_status(event)
-        return told if status is None else [*told, Reply(to.link, to.addressed, status)]
+        to, status = self._orbit_from, orbit_status(event)
+        return [] if status is None else [Reply(to.link, to.addressed, status)]
 
     def _ending(self, event: ipc.EndingEvent, now_ns: int) -> list[BridgeEffect]:
         pending = self._pending.pop(event.id, None)

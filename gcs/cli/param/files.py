@@ -17,6 +17,7 @@ from gcs.parameter_files.writer import FORMATS, SUFFIXES
 
 if TYPE_CHECKING:
     from gcs.cli.param.talk import Talk
+    from gcs.parameter_files.described import Description
     from gcs.parameter_files.model import Difference, Entry
 
 EXITS = (
@@ -79,8 +80,8 @@ def save(file: str, form: str | None, force: bool, **to: Unpack[ToVehicle]) -> N
 def load(file: str, yes: bool, dry_run: bool, **to: Unpack[ToVehicle]) -> None:
     """Set on the vehicle what differs from FILE, each read back.
 
-    What differs is shown first.  What the vehicle counts or measures itself (STAT_*, totals,
-    pressures) is left out.
+    What differs is shown first.  What is beyond the vehicle's own bounds, where it tells them
+    (PX4), is not sent.  What it counts or measures itself (STAT_*, totals, pressures) is left out.
     Parameters that appear once others are set, such as behind ArduPilot's *_ENABLE, follow in
     further passes.
     """
@@ -88,9 +89,12 @@ def load(file: str, yes: bool, dry_run: bool, **to: Unpack[ToVehicle]) -> None:
 
     wanted = {name: each for name, each in _read(file).items() if not name.startswith(COUNTED)}
     shown: list[Difference] = []
+    known: dict[str, Description] = {}
 
     def look(talk: Talk) -> ExitCode:
         shown.extend(_to_send(talk.parameters(), wanted))
+        if shown and not dry_run:
+            known.update(talk.descriptions())
         return ExitCode.DONE
 
     context = click.get_current_context()
@@ -115,16 +119,22 @@ def load(file: str, yes: bool, dry_run: bool, **to: Unpack[ToVehicle]) -> None:
         click.confirm(f"set these {len(here)} parameters?", abort=True)
 
     def task(talk: Talk) -> ExitCode:
-        return _load(talk, wanted, here, as_json=as_json)
+        return _load(talk, wanted, here, known, as_json=as_json)
 
     code = with_vehicle("param load", to, task, record=True)
     context.exit(code)
 
 
 def _load(
-    talk: Talk, wanted: dict[str, Entry], first: list[Difference], *, as_json: bool
+    talk: Talk,
+    wanted: dict[str, Entry],
+    first: list[Difference],
+    known: dict[str, Description],
+    *,
+    as_json: bool,
 ) -> ExitCode:
-    """Pass by pass, until nothing new has appeared."""
+    """Pass by pass, until nothing new has appeared.  What is beyond the vehicle's own bounds is not
+    sent."""
     from gcs import ipc
     from gcs.cli.param.talk import failure
 
@@ -136,12 +146,16 @@ def _load(
         for each in sending:
             tried.add(each.name)
             assert each.b is not None
-            ask = ipc.Ask(0, "param_set", name=each.name, value=float(each.b.value))
-            tracked = talk.ask(ask)
-            why = "" if tracked.completed else failure(tracked)
-            rows.append({"name": each.name, "value": ask.value, "set": not why, "why": why})
+            value, code = float(each.b.value), ExitCode.USAGE
+            described = known.get(each.name)
+            why = "" if described is None else described.beyond(value)[0]
+            if not why:
+                tracked = talk.ask(ipc.Ask(0, "param_set", name=each.name, value=value))
+                code = tracked.exit_code
+                why = "" if tracked.completed else failure(tracked)
+            rows.append({"name": each.name, "value": value, "set": not why, "why": why})
             if why:
-                failed.append(tracked.exit_code)
+                failed.append(code)
                 talk.say(why, err=True)
         present = talk.parameters()
         left = [each for each in _to_send(present, wanted) if each.name not in tried]

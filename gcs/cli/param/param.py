@@ -95,11 +95,13 @@ def get(names: tuple[str, ...], **to: Unpack[ToVehicle]) -> None:
 def set_(name: str, value: str, **to: Unpack[ToVehicle]) -> None:
     """Set a parameter and read it back.
 
-    What safety stands on (`gcs bridge --explain NAME`) is set while the vehicle is disarmed on
+    A value beyond the bounds that a PX4 itself tells (gcs param show) is refused.  What safety
+    stands on (`gcs bridge --explain NAME`) is set while the vehicle is disarmed on
     the ground only.
     """
     from gcs import ipc
     from gcs.cli.param.talk import failure, with_vehicle
+    from gcs.gate.refusal import Code
     from gcs.operator.number_text import read_number
 
     try:
@@ -108,6 +110,14 @@ def set_(name: str, value: str, **to: Unpack[ToVehicle]) -> None:
         raise ExitError(ExitCode.USAGE, f"{name}: {error}") from None
 
     def task(talk: Talk) -> ExitCode:
+        known = talk.descriptions().get(name.upper())
+        beyond, numbers = known.beyond(number) if known is not None else ("", {})
+        if beyond:
+            code = Code.BAD_PARAMETER
+            verdict = ipc.VerdictEvent(0, "param_set", "refused", code, beyond, numbers=numbers)
+            told_line = f"refused {code}: {beyond}"
+            talk.say(ipc.encode(verdict).decode().rstrip() if to["as_json"] else told_line)
+            return ExitCode.USAGE
         tracked = talk.ask(ipc.Ask(0, "param_set", name=name.upper(), value=number))
         told = tracked.outcome or tracked.verdict
         if to["as_json"] and told is not None:
@@ -131,17 +141,12 @@ def show(name: str, **to: Unpack[ToVehicle]) -> None:
     """
     from gcs import ipc
     from gcs.cli.param.talk import entries_of, with_vehicle
-    from gcs.parameter_files.described import PATHS, described, lines_of
+    from gcs.parameter_files.described import lines_of
 
     def task(talk: Talk) -> ExitCode:
         tracked = talk.done(ipc.Ask(0, "param_get", name=name.upper()))
         entry = entries_of(tracked)[name.upper()]
-        known = None
-        for path in () if talk.is_ardupilot else PATHS:
-            data = talk.file(path)
-            if data is not None:
-                known = described(path, data).get(entry.name)
-                break
+        known = talk.descriptions().get(entry.name)
         if to["as_json"]:
             whole = {"name": entry.name, "value": finite(entry), "type": entry.kind}
             talk.say(msgspec.json.encode(whole | {"description": known}).decode())

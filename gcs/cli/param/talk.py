@@ -14,6 +14,7 @@ from gcs.exit_codes import ExitCode
 from gcs.operator import event_text
 from gcs.operator.conversation import TrackedRequest
 from gcs.operator.dialogue import Dialogue
+from gcs.parameter_files.described import PATHS, Description, described
 from gcs.parameter_files.model import Entry
 
 
@@ -78,6 +79,19 @@ class Talk:
         tracked = self.ask(ipc.Ask(0, "file_read", path=path))
         parts = [each.data for each in tracked.found if isinstance(each, ipc.FileDataEvent)]
         return b"".join(parts) if tracked.completed else None
+
+    def descriptions(self) -> dict[str, Description]:
+        """What the vehicle says of its own parameters; nothing where it has no such file, as an
+        ArduPilot, or where none may be read now, as in the air."""
+        for path in () if self.is_ardupilot else PATHS:
+            data = self.file(path)
+            if data is not None:
+                try:
+                    return described(path, data)
+                except ValueError as error:
+                    self.say(f"gcs: its descriptions cannot be read: {error}", err=True)
+                    return {}
+        return {}
 
     def folder(self, path: str) -> list[ipc.FileInfo]:
         """What one of the vehicle's folders holds; nothing where there is none of that name."""

@@ -8,6 +8,7 @@ from gcs.operator.operation import Operation
 from gcs.operator.requests.asks import Asks
 
 
+@arguments.all_called_right
 class Flights(Asks):
     """Everything that moves the vehicle, or stops it."""
 
@@ -117,7 +118,7 @@ class Flights(Asks):
         speed_m_s: float,
         centre: tuple[float, float, float] | None = None,
         *,
-        turns: float = 0.0,
+        turns: float = 1.0,
         nose: str = "centre",
         wait: bool | None = None,
         timeout_s: float | None = None,
@@ -126,7 +127,8 @@ class Flights(Asks):
 
         `centre` is metres east, north, up; None is where the vehicle is.  `turns` 0 is until
         something else is asked for, and then it is waited for only if that is said.  `nose`:
-        centre, initial, free, along.
+        centre, initial, free, along.  A speed that the policy or the circle does not allow is
+        refused.
         """
         circle = ipc.Circle(
             arguments.place("orbit", centre=centre),

@@ -12,6 +12,7 @@ from gcs.operator.requests.asks import Asks
 Path = str | os.PathLike[str]
 
 
+@arguments.all_called_right
 class Missions(Asks):
     """The mission on board, its fence and its rally points."""
 

@@ -10,6 +10,7 @@ from gcs.operator.operation import Operation
 from gcs.operator.requests.asks import Asks
 
 
+@arguments.all_called_right
 class Parameters(Asks):
     """Read, and set through the gate."""
 

@@ -23,9 +23,15 @@ class Station(FakeStation):
     )
     behind: dict[str, int | float] = field(default_factory=lambda: {"BRAKE_GAIN": 1.0})
     asked: list[str] = field(default_factory=list)
+    described: bytes = b""
+    """Its parameters.json."""
 
     def _asked(self, ask: ipc.Ask, now_s: float) -> list[ipc.Event]:
         self.asked.append(f"{ask.word} {ask.name}".strip())
+        if ask.word == "file_read" and self.described and not ask.path.endswith(".xz"):
+            return self._quick(
+                ask, self.state, ipc.FileDataEvent(ask.id, 0, self.described, len(self.described))
+            )
         if ask.word == "file_read":
             return self._refuse(ask, "IN_AIR", "not in the air")
         if ask.word == "param_list":
@@ -146,6 +152,27 @@ def test_a_bad_file_is_four_and_no_station_is_started(station: Station, tmp_path
         assert result.exit_code == ExitCode.BAD_FILE
         assert "a.parm:1: RTL_ALT: 'x' is not a number" in result.output
     assert station.asked == []
+
+
+BOUNDS = [{"name": "RTL_ALT", "min": 5, "max": 100, "units": "m"}, {"name": "RTL_TYPE", "max": 3}]
+
+
+def test_what_is_beyond_the_vehicles_own_bounds_is_not_sent(
+    station: Station, tmp_path: Path
+) -> None:
+    station.described = json.dumps({"version": 1, "parameters": BOUNDS}).encode()
+    low = gcs("param", "set", "rtl_alt", "4")
+    assert low.exit_code == ExitCode.USAGE
+    assert "RTL_ALT: 4 m: the vehicle's own bounds are from 5 to 100" in low.output
+    told = json.loads(gcs("param", "set", "RTL_TYPE", "4", "--json").output)
+    assert (told["code"], told["numbers"]) == ("BAD_PARAMETER", {"value": 4, "min": None, "max": 3})
+    assert gcs("param", "set", "RTL_TYPE", "3").exit_code == ExitCode.DONE
+    file = tmp_path / "a.parm"
+    file.write_text("RTL_ALT 101\nRTL_TYPE 0\n")
+    loaded = gcs("param", "load", file, "--yes")
+    assert loaded.exit_code == ExitCode.USAGE
+    assert "1 of 2 parameters are set" in loaded.output
+    assert (station.values["RTL_ALT"], station.values["RTL_TYPE"]) == (15.5, 0)
 
 
 def test_what_nobody_describes_is_said_so(station: Station) -> None:

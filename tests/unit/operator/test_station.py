@@ -118,7 +118,7 @@ def test_what_is_no_number_goes_to_the_gate_as_null() -> None:
 
 def test_an_orbit_without_an_end_is_not_waited_for() -> None:
     station, way = flying()
-    station.orbit(-10.0, 2.0, (0.0, 20.0, 5.0), nose="along", wait=False)
+    station.orbit(-10.0, 2.0, (0.0, 20.0, 5.0), turns=0, nose="along")
     circle = ipc.Circle((0.0, 20.0, 5.0), -10.0, 2.0, 0.0, "along")
     assert way.sent[-1] == ipc.Ask(2, "orbit", orbit=circle)
 
@@ -298,6 +298,11 @@ WRONG: list[tuple[Wrong, str]] = [
     (lambda s: s.upload(5), "upload: path must be a path, not 5"),  # type: ignore[arg-type]
     (lambda s: s.land(timeout_s="1"), "land: timeout_s must be a number, not '1'"),  # type: ignore[arg-type]
     (lambda s: s.land(timeout_s=-1), "land: timeout_s must be a number of seconds, not negative"),
+    (lambda s: s.goto(1, 0), "goto: missing a required argument: 'up_m'"),  # type: ignore[call-arg]
+    (lambda s: s.goto(1, 0, 2, alt=5), "goto: got an unexpected keyword argument 'alt'"),  # type: ignore[call-arg]
+    (lambda s: s.velocity(1, 0, 0), "velocity: missing a required"),  # type: ignore[call-arg]
+    (lambda s: s.land(5), "land: too many positional arguments"),  # type: ignore[call-arg,arg-type]
+    (lambda s: s.upload(), "upload: missing a required argument: 'path'"),  # type: ignore[call-arg]
     (lambda s: s.telemetry(5), "telemetry: message must be a text, not 5"),  # type: ignore[arg-type]
 ]
 
@@ -320,6 +325,12 @@ def test_numbers_of_others_are_numbers() -> None:
     station, way = flying()
     station.goto(np.float32(1.5), Fraction(1, 2), True, wait=False)  # type: ignore[arg-type]
     assert way.sent[-1] == ipc.Ask(2, "goto", goal_enu=(1.5, 0.5, 1.0))
+
+
+def test_the_module_shows_its_library_and_nothing_else() -> None:
+    assert [name for name in dir(gcs) if not name.startswith("__")] == sorted(gcs.__all__)
+    with pytest.raises(gcs.BadArgument, match="connect: too many positional arguments"):
+        gcs.connect("udpin://127.0.0.1:1", "lab")  # type: ignore[call-arg,arg-type]
 
 
 def test_every_public_method_says_what_it_does() -> None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from gcs.gate.effects import OutcomeKind
 from gcs.gate.inputs import MissionLoaded
+from gcs.protocol.fence_parameters import TAKEN_OFF
 from gcs.protocol.mission import MissionClear
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.work import GateInput
@@ -17,6 +18,7 @@ from gcs.vehicle.missions.jobs.job import (
     VehicleView,
     may_not_fence,
 )
+from gcs.vehicle.missions.paths import autopilot_name
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import MissionItemInt
 
@@ -53,7 +55,11 @@ class Clear(Job):
         if self._left:
             return work + self._clear(view, now_ns)
         told = ", ".join(GONE[kind] for kind in self._kinds)
-        stays = self._stays(view) if self._kinds == (MissionType.MISSION,) else ()
+        stays: Iterable[str] = ()
+        if self._kinds == (MissionType.MISSION,):
+            stays = self._stays(view)
+        elif self.asked.word == "fence_clear":
+            stays = self._limits(view)
         return work + self.end(OutcomeKind.COMPLETE, None, "; ".join((told, *stays)))
 
     def _stays(self, view: VehicleView) -> Iterator[str]:
@@ -62,6 +68,13 @@ class Clear(Job):
             if items != ():
                 doubt = "" if items else ", if there is any"
                 yield f"its {name}{doubt} (`gcs {name.split()[0]} clear`)"
+
+    def _limits(self, view: VehicleView) -> Iterator[str]:
+        """What else keeps it in, once `fence put` has set it, and what takes that off."""
+        sets = TAKEN_OFF.get(autopilot_name(view.telemetry), ())
+        if sets:
+            how = ", ".join(f"`gcs param set {each}`" for each in sets)
+            yield f"limits of radius and height, if they are set, stay ({how})"
 
     def file(self, news: FileRead | FileWritten, view: VehicleView, now_ns: int) -> list[JobWork]:
         return []

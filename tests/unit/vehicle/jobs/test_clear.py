@@ -69,6 +69,8 @@ def test_one_kind_alone(word: str, kind: MissionType, left: list[int]) -> None:
     assert cleared.outcome == (OutcomeKind.COMPLETE, None)
     assert [len(items) for items in there.lists.values()] == left
     assert (cleared.kept, len(there.items)) == ([], 4)
+    limits = "`gcs param set GF_MAX_HOR_DIST 0`, `gcs param set GF_MAX_VER_DIST 0`"
+    assert (limits in cleared.sentence) is (word == "fence_clear")
 
 
 def test_in_the_air_the_fence_stays_and_rally_points_may_go() -> None:
