@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import ipaddress
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 
 if TYPE_CHECKING:
+    from gcs.live.program import Opened
     from gcs.operator.client import StationClient
 
 DEFAULT_HOST = "127.0.0.1"
@@ -52,7 +53,10 @@ LIVE = click.Option(
 
 
 def open_beside(
-    station: StationClient, address: tuple[str, int] | None, echo: Callable[[str], None]
+    station: StationClient,
+    address: tuple[str, int] | None,
+    echo: Callable[[str], None],
+    allow: Sequence[str] = (),
 ) -> list[str]:
     """Open a live view of a station that was just started, if one is wanted; what was told of it.
 
@@ -67,25 +71,28 @@ def open_beside(
 
     try:
         check_installed()
-        opened = opened_by(Wanted(station.pid, *address), lambda: station.running)
+        opened = opened_by(Wanted(station.pid, *address, [*allow]), lambda: station.running)
     except ExitError:
         station.send(ipc.Leave("there is no live view"))
         station.close()
         raise
-    lines = lines_about(opened.url, opened.code, address[0]) if opened is not None else []
+    lines = lines_about(opened, address[0]) if opened is not None else []
     for line in lines:
         echo(line)
     return lines
 
 
-def lines_about(url: str, code: str, host: str) -> list[str]:
+def lines_about(opened: Opened, host: str) -> list[str]:
     """What whoever has asked for a live view is told of it."""
+    layout = opened.layout or "what `gcs log layout` writes"
     lines = [
-        f"live view: {url}",
-        "  Foxglove: Open connection > Foxglove WebSocket, then import the layout that",
-        "  `gcs log layout` writes",
-        f'  to fly from there, call its service take_control with {{"code": "{code}"}}',
+        f"live view: {opened.url}",
+        "  Foxglove: Open connection > Foxglove WebSocket, then Layouts > Import from file:",
+        f"  {layout}",
     ]
+    if opened.layout:
+        lines.append('  Press "take control" there, and a click in its 3D panel is a goal.')
+    lines.append(f'  The service take_control takes {{"code": "{opened.code}"}}')
     if not _this_machine_alone(host):
         lines.append(f"  all who can reach {host} can look on, and stop the vehicle")
     return lines

@@ -15,7 +15,7 @@ import msgspec
 
 from gcs.frames import Vec3, enu_from_ned
 
-MAX_MESSAGE_BYTES = 4_096
+MAX_GOAL_BYTES = 4_096
 FRAME_NAME_BYTES = 64
 LEVEL_QUATERNION_SQUARED = 1e-6
 POINT_KINDS = frozenset({"PointStamped"})
@@ -89,7 +89,7 @@ def clicked_goal(encoding: str, schema_name: str, data: bytes) -> ClickedGoal:
     if kind not in KINDS:
         known = ", ".join(sorted(KINDS))
         raise BadMessageError(f"a goal is one of {known}, not {schema_name[:80]!r}")
-    if len(data) > MAX_MESSAGE_BYTES:
+    if len(data) > MAX_GOAL_BYTES:
         raise BadMessageError(f"a goal of {len(data)} bytes is none")
     match encoding:
         case "json":
@@ -134,23 +134,28 @@ def _from_ros1(kind: str, data: bytes) -> tuple[str, Vec3, _Quaternion | None]:
 def _in_map(frame: str, position: Vec3, turn: _Quaternion | None) -> ClickedGoal:
     """The frames of the record: `map` is east, north, up, `local_ned` north, east, down."""
     match frame.removeprefix("/"):
-        case "map" | "":
-            return ClickedGoal(position, None if turn is None else _heading_deg(turn))
+        case "map":
+            turn_deg = None if turn is None else _turn_deg(turn)
+            # Anticlockwise from east.
+            return ClickedGoal(position, None if turn_deg is None else (90.0 - turn_deg) % 360.0)
         case "local_ned":
-            return ClickedGoal(enu_from_ned(position))
+            turn_deg = None if turn is None else _turn_deg(turn)
+            # About down, from north.
+            at_enu = enu_from_ned(position)
+            return ClickedGoal(at_enu, None if turn_deg is None else turn_deg % 360.0)
         case _:
             raise BadMessageError(
-                f"a goal must be in the frame 'map', not {frame[:FRAME_NAME_BYTES]!r}: "
+                f"a goal must be in the frame 'map', not in {frame[:FRAME_NAME_BYTES]!r}: "
                 "choose it as the 3D panel's display frame"
             )
 
 
-def _heading_deg(q: _Quaternion) -> float | None:
-    """Of a turn about the vertical axis: anticlockwise from east becomes clockwise from north."""
+def _turn_deg(q: _Quaternion) -> float | None:
+    """About the frame's z axis, from its x axis; None where it tells no direction."""
     values = (q.x, q.y, q.z, q.w)
     if not all(map(math.isfinite, values)):
         return None
     if sum(value * value for value in values) < LEVEL_QUATERNION_SQUARED:
         return None
     turn_rad = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
-    return (90.0 - math.degrees(turn_rad)) % 360.0
+    return math.degrees(turn_rad)

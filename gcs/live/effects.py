@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs import ipc
+from gcs.live.inputs import Call
 from gcs.live.services import Answer
 
 
@@ -26,7 +28,7 @@ class Send:
 
 @dataclass(frozen=True, slots=True)
 class Close:
-    """End this viewer's connection without a word: the station holds for it."""
+    """End this viewer's connection to the station without a word: the station holds for it."""
 
     viewer: int
 
@@ -35,16 +37,29 @@ class Close:
 class Reply:
     """The response of a call."""
 
-    call: int
+    call: Call
     answer: Answer
 
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """A sentence for all viewers to see."""
+    """A sentence for a viewer to see, or for all (None)."""
 
+    viewer: int | None
     text: str
     warning: bool
 
 
-Effect: TypeAlias = Join | Send | Close | Reply | Notice
+@dataclass(frozen=True, slots=True)
+class Values:
+    """Parameters as they are now, for the viewer that has asked, or for all that want to know of
+    changes (None)."""
+
+    viewer: int | None
+    values: Mapping[str, float]
+    request: str | None = None
+
+
+Answering: TypeAlias = Reply | Notice | Values
+"""What viewers are told."""
+Effect: TypeAlias = Join | Send | Close | Answering

@@ -1,7 +1,8 @@
-"""Everything that reaches `viewers.py`, as a closed union of frozen values."""
+"""What reaches `viewers.py`, as a closed union of frozen values."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -9,17 +10,21 @@ from gcs import ipc
 
 
 @dataclass(frozen=True, slots=True)
-class Called:
-    """A viewer has called a service; `call` numbers the call for its answer.
-
-    `watching`: it has a subscription or a topic of its own, so that its end will be noticed.
-    """
+class Call:
+    """Which call of which viewer, as its answer names it."""
 
     viewer: int
-    call: int
+    service_id: int
+    call_id: int
+
+
+@dataclass(frozen=True, slots=True)
+class Called:
+    """A viewer has called a service."""
+
+    call: Call
     service: str
     payload: bytes
-    watching: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +38,21 @@ class Published:
 
 
 @dataclass(frozen=True, slots=True)
+class ParametersAsked:
+    """A viewer wants to know these parameters (none: all), or to set them.
+
+    `request` is what the viewer calls its request.
+    """
+
+    viewer: int
+    names: tuple[str, ...]
+    request: str | None
+    set_to: Mapping[str, object] | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Gone:
-    """A viewer has neither a subscription nor a topic of its own left: its connection ended."""
+    """A viewer's connection has ended."""
 
     viewer: int
 
@@ -59,4 +77,6 @@ class Tick:
     """Time has passed."""
 
 
-Input: TypeAlias = Called | Published | Gone | Told | Ended | Tick
+Asked: TypeAlias = Called | Published | ParametersAsked | Gone
+"""By a viewer."""
+Input: TypeAlias = Asked | Told | Ended | Tick

@@ -29,18 +29,21 @@ LOOK_AGAIN_S = 0.1
 
 
 class Wanted(msgspec.Struct, frozen=True):
-    """`pid` of the station; `port` 0: the first usual one that is free."""
+    """`pid` of the station; `port` 0: the first usual one that is free; `allow`: `Admission`."""
 
     pid: int
     host: str
     port: int
+    allow: list[str] = []
 
 
 class Opened(msgspec.Struct, frozen=True):
-    """Where viewers connect and what lets them take control; or why there is no live view."""
+    """Where viewers connect, what lets them take control and where the layout is; or why there is
+    no live view."""
 
     url: str = ""
     code: str = ""
+    layout: str = ""
     error: str = ""
     hint: str = ""
     exit_code: int = 0
@@ -82,11 +85,11 @@ def opened_by(wanted: Wanted, station_runs: Callable[[], bool] = lambda: True) -
 
 def check_installed() -> None:
     """Raises ExitError where the server's library is missing."""
-    if find_spec("foxglove") is None:
+    if find_spec("websockets") is None:
         raise ExitError(
             ExitCode.USAGE,
-            "a live view needs foxglove-sdk, which is not installed here",
-            "pip install foxglove-sdk (it has no wheel for every Python and machine)",
+            "a live view needs websockets, which is not installed here",
+            "pip install websockets",
         )
 
 
@@ -108,13 +111,16 @@ def main(argument: str) -> int:
         check_installed()
         from gcs.live.view import Address, open_view
 
-        view = open_view(_the_station(wanted.pid), Address(wanted.host, wanted.port))
+        address = Address(wanted.host, wanted.port, frozenset(wanted.allow))
+        view = open_view(_the_station(wanted.pid), address)
     except ExitError as error:
         _tell(Opened(error=str(error), hint=error.hint, exit_code=error.exit_code))
         return error.exit_code
-    _tell(Opened(view.url, view.code))
-    view.run()
-    view.close()
+    _tell(Opened(view.url, view.code, view.layout.path))
+    try:
+        view.run()
+    finally:
+        view.close()
     return 0
 
 

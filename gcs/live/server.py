@@ -1,296 +1,317 @@
-"""The WebSocket server that viewers connect to: foxglove-sdk's, with the topics of a station.
+"""What each viewer is sent, and what it asks for: the protocol's state, without a socket.  Pure.
 
-Its callbacks run on its own threads; they decide nothing (`inbox.py`).  The SDK has no limit for
-the number of connections, takes messages of 16 MiB, tells nobody where a page comes from (Origin),
-and says that a connection has ended only by the end of its subscriptions and topics.
+`handle` takes what viewers say, what the station records and what `viewers.py` answers; it answers
+with frames for viewers and with what they ask for.  Who subscribes late is sent the last message of
+the topic, of some topics more, so that a viewer that comes late is not empty.
 """
 
 from __future__ import annotations
 
-import logging
-import threading
-from collections.abc import Callable
-from typing import Any
+from collections import deque
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias, assert_never
 
-import foxglove
 import msgspec
-from foxglove.websocket import (
-    Capability,
-    ChannelView,
-    Client,
-    ClientChannel,
-    MessageSchema,
-    Parameter,
-    ServerListener,
-    ServiceRequest,
-    ServiceSchema,
-    StatusLevel,
-    WebSocketServer,
-)
-from foxglove.websocket import Service as SdkService
 
 from gcs import ipc
-from gcs.live.clicked_goals import ENCODINGS, KINDS, MAX_MESSAGE_BYTES, kind_of
-from gcs.live.inbox import Inbox
-from gcs.live.inputs import Gone, Published
+from gcs.live import protocol
+from gcs.live.clicked_goals import ENCODINGS
+from gcs.live.effects import Answering, Notice, Reply, Values
+from gcs.live.inputs import Asked, Call, Called, Gone, ParametersAsked, Published
 from gcs.live.parameters import Parameters
-from gcs.live.services import MAX_REQUEST_BYTES, SERVICES, Answer, schema_of
-from gcs.live.viewers import CALL_WAIT_NS
+from gcs.live.services import SERVICES, Answer, schema_of
 
-MESSAGE_BACKLOG = 512
-"""Messages that wait for one viewer; then the oldest is dropped."""
-MAX_VIEWER_TOPICS = 16
+KEPT = {"/log": 200, "/gate/decision": 100, "/events": 100}
+"""How many of the last messages of a topic there are for who subscribes late; 1 of the others.
+What is repeated in a next file of the record (`latch`) is kept for each of its subjects."""
+MAX_VIEWER_TOPICS = 32
 """Topics that one viewer may publish on."""
-MAX_DESCRIPTION_LETTERS = 128
-"""Of such a topic's encoding and schema name, which are kept."""
-CALL_WAIT_S = CALL_WAIT_NS / 1e9 + 1.0
-FIRST_NS = 2_000_000_000
-MAX_FIRST = 32
-"""Messages that are kept from the first seconds of a topic, for who subscribes as it appears."""
+MAX_NAME_LETTERS = 128
+"""Of their encoding and schema name, which are kept."""
 STATUS_ID = "mavgate"
-FIRST_PORTS = range(8765, 8775)
-"""Tried in turn where no port is asked for; 8765 is what viewers offer."""
+PARAMETERS = frozenset(Parameters.__struct_fields__)
 
 
-class PortTakenError(Exception):
-    """Another program listens there."""
+@dataclass(frozen=True, slots=True)
+class Came:
+    """A viewer has connected."""
+
+    viewer: int
 
 
-class LiveServer:
-    """Topics out, calls and messages in; made with `start`."""
+@dataclass(frozen=True, slots=True)
+class Said:
+    """A whole WebSocket message of a viewer's."""
 
-    def __init__(self, inbox: Inbox) -> None:
-        self._inbox = inbox
-        self._context = foxglove.Context()
-        self._callbacks = Callbacks(inbox)
-        self._channels: dict[int, foxglove.Channel] = {}
-        self._topics: dict[str, int] = {}
-        self._latched: dict[int, dict[str, tuple[bytes, int]]] = {}
-        self._first: dict[int, list[tuple[bytes, int]]] = {}
-        self._first_until_ns: dict[int, int] = {}
-        self._last_ns = 0
-        self._server: WebSocketServer | None = None
+    viewer: int
+    data: bytes
+    text: bool
 
-    def start(self, host: str, port: int) -> str:
-        """Listen; the URL.  `port` 0: the first of `FIRST_PORTS` that is free.
 
-        Raises PortTakenError, or OSError for an address that is not this machine's.
-        """
-        ports = [port] if port else FIRST_PORTS
-        for each in ports:
-            try:
-                self._server = self._start(host, each)
-            except PortTakenError:
-                continue
-            shown = f"[{host}]" if ":" in host else host
-            return f"ws://{shown}:{self._server.port}"
-        taken = f"{host}:{ports[0]}" if port else f"{host}:{ports[0]} to {ports[-1]}"
-        raise PortTakenError(f"{taken}: the port is taken by another program")
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """Who publishes and who subscribes to what, in names of nodes."""
 
-    def _start(self, host: str, port: int) -> WebSocketServer:
-        # The SDK logs every mistake of every viewer; nobody could read that beside a flight.
-        logging.getLogger("foxglove").disabled = True
-        try:
-            return foxglove.start_server(
-                name="mavgate",
-                host=host,
-                port=port,
-                context=self._context,
-                capabilities=[Capability.ClientPublish, Capability.Parameters, Capability.Services],
-                supported_encodings=list(ENCODINGS),
-                services=[self._service(name) for name in SERVICES],
-                server_listener=self._callbacks,
-                message_backlog_size=MESSAGE_BACKLOG,
-            )
-        except Exception as error:  # the SDK has one kind of error for all of them
-            text = str(error)
-            if "in use" in text.lower() or "only one usage" in text.lower():
-                raise PortTakenError(text) from error
-            raise OSError(text) from error
+    published: Mapping[str, list[str]]
+    subscribed: Mapping[str, list[str]]
 
-    def _service(self, name: str) -> SdkService:
-        request = SERVICES[name].request
-        return SdkService(
-            name,
-            schema=ServiceSchema(
-                name=f"mavgate.{request.__name__}",
-                request=_schema(f"mavgate.{request.__name__}", schema_of(request)),
-                response=_schema("mavgate.Answer", schema_of(Answer)),
-            ),
-            handler=self._callbacks.on_call,
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A whole WebSocket message for a viewer; one of a topic may be left out if it is slow."""
+
+    viewer: int
+    data: bytes
+    text: bool
+    of_a_topic: bool = False
+
+
+ServerInput: TypeAlias = Came | Said | Gone | Graph | ipc.Topic | ipc.TopicMessage | Answering
+ServerEffect: TypeAlias = Frame | Asked
+
+
+@dataclass(slots=True)
+class _Viewer:
+    subscriptions: dict[int, int] = field(default_factory=dict)
+    """Number of the subscription -> of our topic."""
+    by_topic: dict[int, int] = field(default_factory=dict)
+    topics: dict[int, protocol.ClientChannel] = field(default_factory=dict)
+    """What it publishes on."""
+    parameters: set[str] = field(default_factory=set)
+    graph: bool = False
+
+
+@dataclass(slots=True)
+class _Topic:
+    number: int
+    described: dict[str, object]
+    last: deque[tuple[bytes, int]]
+    latched: dict[str, tuple[bytes, int]] = field(default_factory=dict)
+
+
+class Server:
+    """All viewers of one live view, as the protocol sees them."""
+
+    def __init__(self, session: str) -> None:
+        """`session`: another one for each server that there is."""
+        self._info = protocol.server_info(session, ENCODINGS)
+        self._services = dict(enumerate(SERVICES, 1))
+        response = ("mavgate.Answer", schema_of(Answer))
+        self._offered = protocol.advertise_services(
+            [
+                protocol.service(
+                    number,
+                    name,
+                    (f"mavgate.{kind.__name__}", schema_of(kind)),
+                    response,
+                )
+                for number, name in self._services.items()
+                for kind in (SERVICES[name].request,)
+            ]
         )
-
-    # --------------------------------------------------------------------------- the topics
-
-    def topic(self, told: ipc.Topic) -> None:
-        """A topic is there from now on; one of that name that was there goes on."""
-        number = self._topics.get(told.topic)
-        if number is not None:
-            self._channels[told.number] = self._channels[number]
-            self._latched[told.number] = self._latched[number]
-            return
-        self._topics[told.topic] = told.number
-        self._latched[told.number] = {}
-        if told.message_encoding != "ros1":  # of raw frames there will be others
-            self._first[told.number] = []
-        schema = foxglove.Schema(
-            name=told.schema_name, encoding=told.schema_encoding, data=told.schema
-        )
-        self._channels[told.number] = foxglove.Channel(
-            told.topic,
-            schema=schema,
-            message_encoding=told.message_encoding,
-            metadata=dict(told.metadata),
-            context=self._context,
-        )
-
-    def message(self, told: ipc.TopicMessage) -> None:
-        """To every viewer that has subscribed to the topic."""
-        number = told.number
-        self._last_ns = max(self._last_ns, told.log_time_ns)
-        if told.latch:
-            self._latched[number][told.latch] = told.data, told.log_time_ns
-        if number in self._first:
-            self._keep_first(told)
-        self._channels[number].base.log(told.data, told.log_time_ns)
-
-    def _keep_first(self, told: ipc.TopicMessage) -> None:
-        first = self._first[told.number]
-        until_ns = self._first_until_ns.setdefault(told.number, told.log_time_ns + FIRST_NS)
-        if told.log_time_ns >= until_ns or len(first) >= MAX_FIRST:
-            del self._first[told.number]
-        elif not told.latch:
-            first.append((told.data, told.log_time_ns))
-
-    def repeat(self) -> None:
-        """Once more, on the topics that somebody has subscribed to since: what is said only once,
-        and what came before a viewer could subscribe to a new topic.
-
-        All who have subscribed get it, with the time that it had.
-        """
-        for topic in self._callbacks.take_subscribed():
-            number = self._topics.get(topic, 0)
-            again = list(self._latched.get(number, {}).values())
-            if self._last_ns < self._first_until_ns.get(number, 0):
-                again += self._first.get(number, [])
-            for data, log_time_ns in again:
-                self._channels[number].base.log(data, log_time_ns)
-
-    # --------------------------------------------------------------------------- the viewers
+        self._viewers: dict[int, _Viewer] = {}
+        self._topics: dict[int, _Topic] = {}
+        self._by_name: dict[str, _Topic] = {}
+        self._all: list[_Topic] = []
+        self._graph = Graph({}, {})
 
     @property
-    def parameters(self) -> Parameters:
-        """As the viewers have set them."""
-        return self._callbacks.parameters
+    def graph_wanted(self) -> bool:
+        """Whether a viewer has subscribed to the connection graph."""
+        return any(viewer.graph for viewer in self._viewers.values())
 
-    def trust(self, viewers: frozenset[int]) -> None:
-        """Only these may set parameters."""
-        self._callbacks.trusted = viewers
+    def handle(self, given: ServerInput) -> list[ServerEffect]:
+        match given:
+            case ipc.TopicMessage():
+                return self._message(given)
+            case Said(viewer, data, text):
+                return self._said(viewer, data, text)
+            case Came(viewer):
+                return self._came(viewer)
+            case Gone(viewer):
+                self._viewers.pop(viewer, None)
+                return [given]
+            case ipc.Topic():
+                return self._topic(given)
+            case Reply(call, answer):
+                payload = msgspec.json.encode(answer)
+                data = protocol.call_response(call.service_id, call.call_id, payload)
+                return self._frames([call.viewer], data, text=False)
+            case Notice(viewer, text, warning):
+                level = protocol.WARNING if warning else protocol.INFO
+                data = protocol.status(text, level, STATUS_ID)
+                return self._frames(self._viewers if viewer is None else [viewer], data)
+            case Values():
+                return self._values(given)
+            case Graph():
+                return self._graph_is(given)
+            case _:
+                assert_never(given)
 
-    def notice(self, text: str, *, warning: bool) -> None:
-        """A sentence in every viewer's list of problems, in place of the one before."""
-        if self._server is not None:
-            level = StatusLevel.Warning if warning else StatusLevel.Info
-            self._server.publish_status(text, level, STATUS_ID)
+    def _frames(
+        self, viewers: Iterable[int], data: bytes, *, text: bool = True
+    ) -> list[ServerEffect]:
+        return [Frame(viewer, data, text) for viewer in viewers if viewer in self._viewers]
 
-    def stop(self) -> None:
-        if self._server is not None:
-            self._server.stop()
+    # ------------------------------------------------------------------------- the station
 
+    def _topic(self, told: ipc.Topic) -> list[ServerEffect]:
+        """A topic is there from now on; one of that name that was there goes on."""
+        known = self._by_name.get(told.topic)
+        if known is not None:
+            self._topics[told.number] = known
+            return []
+        # Not the station's number: that one begins anew with a new connection to it.
+        number = len(self._all) + 1
+        described = protocol.channel(
+            number,
+            told.topic,
+            told.message_encoding,
+            told.schema_name,
+            told.schema_encoding,
+            told.schema,
+        )
+        made = _Topic(number, described, deque(maxlen=KEPT.get(told.topic, 1)))
+        self._all.append(made)
+        self._by_name[told.topic] = self._topics[told.number] = made
+        return self._frames(self._viewers, protocol.advertise([described]))
 
-def _schema(name: str, data: bytes) -> MessageSchema:
-    return MessageSchema(
-        encoding="json", schema=foxglove.Schema(name=name, encoding="jsonschema", data=data)
-    )
+    def _message(self, told: ipc.TopicMessage) -> list[ServerEffect]:
+        topic = self._topics.get(told.number)
+        if topic is None:
+            return []
+        if told.latch:
+            topic.latched[told.latch] = (told.data, told.log_time_ns)
+        else:
+            topic.last.append((told.data, told.log_time_ns))
+        number = topic.number
+        return [
+            _of_topic(viewer, subscription, told.log_time_ns, told.data)
+            for viewer, each in self._viewers.items()
+            if (subscription := each.by_topic.get(number)) is not None
+        ]
 
+    # ------------------------------------------------------------------------- the viewers
 
-class Callbacks(ServerListener):
-    """What the SDK calls, on its own threads."""
+    def _came(self, viewer: int) -> list[ServerEffect]:
+        self._viewers[viewer] = _Viewer()
+        topics = protocol.advertise([topic.described for topic in self._all])
+        return [Frame(viewer, data, True) for data in (self._info, topics, self._offered)]
 
-    def __init__(self, inbox: Inbox) -> None:
-        self._inbox = inbox
-        self._lock = threading.Lock()
-        self._topics: dict[int, dict[int, str]] = {}
-        """What each viewer publishes on: number of its topic -> encoding and schema, by a NUL."""
-        self._subscriptions: dict[int, set[int]] = {}
-        self._subscribed: set[str] = set()
-        self.parameters = Parameters()
-        self.trusted: frozenset[int] = frozenset()
+    def _said(self, viewer: int, data: bytes, text: bool) -> list[ServerEffect]:
+        said_by = self._viewers.get(viewer)
+        if said_by is None:
+            return []
+        try:
+            request = protocol.client_request(data, text=text)
+        except protocol.BadClientMessageError as error:
+            return self._mistake(viewer, str(error))
+        match request:
+            case protocol.ClientMessage(channel, published):
+                topic = said_by.topics.get(channel)
+                if topic is None:
+                    return self._mistake(viewer, f"channel {channel} was not advertised")
+                return [Published(viewer, topic.encoding, topic.schema_name, published)]
+            case protocol.CallRequest():
+                return self._call(viewer, request)
+            case protocol.Subscribe(subscriptions):
+                return [one for each in subscriptions for one in self._subscribe(viewer, each)]
+            case protocol.Unsubscribe(numbers):
+                for number in numbers:
+                    of_topic = said_by.subscriptions.pop(number, None)
+                    if of_topic is not None:
+                        del said_by.by_topic[of_topic]
+            case protocol.Advertise(channels):
+                return self._advertise(viewer, said_by, channels)
+            case protocol.Unadvertise(numbers):
+                for number in numbers:
+                    said_by.topics.pop(number, None)
+            case protocol.GetParameters(names, request_id):
+                return [ParametersAsked(viewer, tuple(names), request_id)]
+            case protocol.SetParameters(parameters, request_id):
+                values = {each.name: each.value for each in parameters}
+                return [ParametersAsked(viewer, tuple(values), request_id, values)]
+            case protocol.SubscribeParameters(names):
+                said_by.parameters |= PARAMETERS & set(names or PARAMETERS)
+            case protocol.UnsubscribeParameters(names):
+                said_by.parameters -= set(names or PARAMETERS)
+            case protocol.SubscribeGraph():
+                said_by.graph = True
+                return self._frames([viewer], self._graph_update(()))
+            case protocol.UnsubscribeGraph():
+                said_by.graph = False
+            case _:
+                assert_never(request)
+        return []
 
-    def take_subscribed(self) -> set[str]:
-        """Topics that somebody has subscribed to since the last time."""
-        if not self._subscribed:
-            return set()
-        with self._lock:
-            taken, self._subscribed = self._subscribed, set()
-        return taken
+    def _mistake(self, viewer: int, text: str) -> list[ServerEffect]:
+        return self._frames([viewer], protocol.status(text, protocol.WARNING, "request"))
 
-    def on_subscribe(self, client: Client, channel: ChannelView) -> None:
-        with self._lock:
-            self._subscriptions.setdefault(client.id, set()).add(channel.id)
-            self._subscribed.add(channel.topic)
+    def _subscribe(self, viewer: int, wanted: protocol.Subscription) -> list[ServerEffect]:
+        subscriber, number = self._viewers[viewer], wanted.channel_id
+        if not 0 < number <= len(self._all):
+            return self._mistake(viewer, f"there is no channel {number}")
+        if wanted.id in subscriber.subscriptions or number in subscriber.by_topic:
+            return self._mistake(viewer, f"subscription {wanted.id} or its channel is taken")
+        subscriber.subscriptions[wanted.id] = number
+        subscriber.by_topic[number] = wanted.id
+        topic = self._all[number - 1]
+        return [
+            _of_topic(viewer, wanted.id, log_time_ns, data)
+            for data, log_time_ns in (*topic.latched.values(), *topic.last)
+        ]
 
-    def on_unsubscribe(self, client: Client, channel: ChannelView) -> None:
-        self._forget(client.id, self._subscriptions, lambda kept: kept.discard(channel.id))
+    def _advertise(
+        self, viewer: int, said_by: _Viewer, channels: list[protocol.ClientChannel]
+    ) -> list[ServerEffect]:
+        """Of any schema: viewers advertise all that their tools may publish.  What is no goal is
+        refused once it is published."""
+        for channel in channels:
+            kept = (channel.encoding, channel.schema_name)
+            room = len(said_by.topics) < MAX_VIEWER_TOPICS or channel.id in said_by.topics
+            if not room or sum(map(len, kept)) > MAX_NAME_LETTERS:
+                return self._mistake(viewer, f"channel {channel.id} is one too many, or too long")
+            said_by.topics[channel.id] = channel
+        return []
 
-    def on_client_advertise(self, client: Client, channel: ClientChannel) -> None:
-        described = f"{channel.encoding}\0{channel.schema_name}"
-        if len(described) > MAX_DESCRIPTION_LETTERS or kind_of(channel.schema_name) not in KINDS:
-            return
-        with self._lock:
-            topics = self._topics.setdefault(client.id, {})
-            if len(topics) < MAX_VIEWER_TOPICS:
-                topics[channel.id] = described
+    def _call(self, viewer: int, asked: protocol.CallRequest) -> list[ServerEffect]:
+        service, why = self._services.get(asked.service_id), ""
+        if service is None:
+            why = f"there is no service {asked.service_id}"
+        elif asked.encoding != "json":
+            why = f"the request of {service} must be json, not {asked.encoding[:40]!r}"
+        else:
+            call = Call(viewer, asked.service_id, asked.call_id)
+            return [Called(call, service, asked.payload)]
+        return self._frames([viewer], protocol.call_failure(asked.service_id, asked.call_id, why))
 
-    def on_client_unadvertise(self, client: Client, client_channel_id: int) -> None:
-        self._forget(client.id, self._topics, lambda kept: kept.pop(client_channel_id, None))
+    def _values(self, given: Values) -> list[ServerEffect]:
+        if given.viewer is not None:
+            data = protocol.parameter_values(given.values, given.request)
+            return self._frames([given.viewer], data)
+        effects: list[ServerEffect] = []
+        for viewer, each in self._viewers.items():
+            wanted = {n: v for n, v in given.values.items() if n in each.parameters}
+            if wanted:
+                effects.append(Frame(viewer, protocol.parameter_values(wanted, None), True))
+        return effects
 
-    def _forget(
-        self, viewer: int, of: dict[int, Any], remove: Callable[[Any], object]
-    ) -> None:  # a set of subscriptions or a dictionary of topics
-        with self._lock:
-            kept = of.get(viewer)
-            if kept is None:
-                return
-            remove(kept)
-            if not kept:
-                del of[viewer]
-            gone = viewer not in self._subscriptions and viewer not in self._topics
-        if gone:
-            self._inbox.put(Gone(viewer))
+    def _graph_is(self, graph: Graph) -> list[ServerEffect]:
+        if graph == self._graph:
+            return []
+        before, self._graph = self._graph, graph
+        gone = {*before.published, *before.subscribed} - {*graph.published, *graph.subscribed}
+        data = self._graph_update(sorted(gone))
+        return self._frames([n for n, each in self._viewers.items() if each.graph], data)
 
-    def on_message_data(self, client: Client, client_channel_id: int, data: bytes) -> None:
-        described = self._topics.get(client.id, {}).get(client_channel_id)
-        if described is None:
-            return
-        encoding, _, schema_name = described.partition("\0")
-        # One byte too many is enough to be refused.
-        self._inbox.put(
-            Published(client.id, encoding, schema_name, bytes(data[: MAX_MESSAGE_BYTES + 1]))
+    def _graph_update(self, removed: Iterable[str]) -> bytes:
+        services = {name: ["gate"] for name in SERVICES}
+        return protocol.graph_update(
+            self._graph.published, self._graph.subscribed, services, removed
         )
 
-    def on_call(self, request: ServiceRequest) -> bytes:
-        viewer = request.client_id
-        watching = viewer in self._subscriptions or viewer in self._topics
-        payload = bytes(request.payload[: MAX_REQUEST_BYTES + 1])
-        answer = self._inbox.call(
-            viewer, request.service_name, payload, watching=watching, wait_s=CALL_WAIT_S
-        )
-        return msgspec.json.encode(answer)
 
-    def on_get_parameters(
-        self, client: Client, param_names: list[str], request_id: str | None = None
-    ) -> list[Parameter]:
-        values = msgspec.structs.asdict(self.parameters)
-        wanted = [name for name in param_names if name in values] or list(values)
-        return [Parameter(name, value=values[name]) for name in wanted]
-
-    def on_set_parameters(
-        self, client: Client, parameters: list[Parameter], request_id: str | None = None
-    ) -> list[Parameter]:
-        """The values as they are now, which tells a viewer that only looks that it set nothing."""
-        if client.id in self.trusted:
-            asked: dict[str, object] = {each.name: each.get_value() for each in parameters}
-            with self._lock:
-                self.parameters = self.parameters.changed(asked)
-        return self.on_get_parameters(client, [each.name for each in parameters], request_id)
+def _of_topic(viewer: int, subscription: int, log_time_ns: int, data: bytes) -> Frame:
+    framed = protocol.message_data(subscription, log_time_ns, data)
+    return Frame(viewer, framed, text=False, of_a_topic=True)

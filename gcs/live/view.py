@@ -1,8 +1,8 @@
 """A live view of a station that runs: an operator's program that serves viewers.
 
-A process of its own.  What viewers send is parsed and kept here, at a lower priority than the
-flight's, so that whatever it costs, the station goes on; to the station this is a program like any
-other one on its local socket, which loses its connection when it does not read.
+A process of its own, with one loop.  What viewers send is parsed and kept here, at a lower priority
+than the flight's, so that whatever it costs, the station goes on; to the station this is a program
+like any other one on its local socket, which loses its connection when it does not read.
 """
 
 from __future__ import annotations
@@ -10,19 +10,25 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
+import select
+import socket
 import sys
 import time
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
-from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send
-from gcs.live.inbox import Inbox, Item
+from gcs.live.admission import Admission
+from gcs.live.connection_graph import ConnectionGraph
+from gcs.live.connections import Connections, Event, PortTakenError, Refused
+from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send, Values
 from gcs.live.inputs import Ended, Input, Tick, Told
-from gcs.live.server import LiveServer, PortTakenError
+from gcs.live.server import Frame, Server, ServerInput
+from gcs.live.session_layout import SessionLayout
 from gcs.live.viewers import LOOKING, Viewers
-from gcs.operator.client import Readable, StationEnded, StationEvent
+from gcs.operator.client import StationEnded, StationEvent
 from gcs.operator.errors import ExitError
 from gcs.operator.joined import JoinedStation
 from gcs.shell.stations import Description
@@ -34,6 +40,8 @@ CODE_LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"
 CODE_LENGTH = 8
 NICE = 10
 MAX_MEMORY_BYTES = 1 << 30
+MAX_REFUSED = 16
+"""Different pages that were not let in, and are told of once each."""
 TAKEN_HINT = "another live view may be open; name a free port, as in 127.0.0.1:9000"
 ADDRESS_HINT = "is the address one of this machine's, and does the station still run?"
 
@@ -48,10 +56,11 @@ class Interrupt(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """`port` 0: the first of the usual ones that is free."""
+    """`port` 0: the first of the usual ones that is free; `allowed`: see `Admission`."""
 
     host: str = "127.0.0.1"
     port: int = 0
+    allowed: frozenset[str] = frozenset()
 
 
 def new_code() -> str:
@@ -63,21 +72,32 @@ def new_code() -> str:
 class LiveView:
     """Serves viewers until the station ends."""
 
-    def __init__(self, described: Description, address: Address) -> None:
-        """Listens at once.  Raises PortTakenError; OSError if the station takes no connection."""
+    def __init__(
+        self, described: Description, address: Address, tell: Callable[[str], None] | None = None
+    ) -> None:
+        """Listens at once.  Raises PortTakenError; OSError if the station takes no connection.
+
+        `tell`: is called with what the user should know.
+        """
         self._described = described
-        self._inbox = Inbox()
-        self._server = LiveServer(self._inbox)
+        self._tell = tell or (lambda _: None)
+        name = socket.gethostname()
+        allowed = address.allowed | {name, f"{name}.local"}
+        self._connections = Connections(Admission(address.host, allowed))
+        self._server = Server(secrets.token_hex(8))
+        self._graph = ConnectionGraph(os.path.basename(described.log_path))
         self.code = new_code()
         self._viewers = Viewers(self.code, time.monotonic_ns())
         self._trusted: dict[int, JoinedStation] = {}
+        self._refused: set[str] = set()
         self._looking = self._join(LOOKING)
         try:
-            self.url = self._server.start(address.host, address.port)
+            self.url = self._connections.listen(address.port)
         except (OSError, PortTakenError):
             self._looking.close_at_once()
-            self._inbox.close()
             raise
+        port = self.url.rpartition(":")[2]
+        self.layout = SessionLayout(described.log_path, port, self.code)
 
     def run(self, interrupt: Interrupt | None = None) -> StationEnded | None:
         """Until the station ends; None if it was interrupted before."""
@@ -85,32 +105,38 @@ class LiveView:
         self._looking.send(ipc.WatchTopics())
         due_s = time.monotonic() + TICK_S
         while interrupt is None or not interrupt.name:
-            also: list[Readable] = [self._inbox, *self._trusted.values()]
-            if interrupt is not None:
-                also.append(interrupt)
-            polled = self._looking.poll(max(0.0, due_s - time.monotonic()), also)
-            for event in polled.events:
+            readers: list[Any] = [self._looking, *self._trusted.values()]
+            readers += [*self._connections.readers, *([interrupt] if interrupt else [])]
+            wait_s = max(0.0, due_s - time.monotonic())
+            ready, writable, _ = select.select(readers, self._connections.writers, [], wait_s)
+            now_ns = time.monotonic_ns()
+            for event in self._looking.poll(0.0).events if self._looking in ready else ():
                 if isinstance(event, StationEnded):
                     if not self._rejoined(event):
                         return event
                 else:
                     self._looked(event)
-            if self._inbox in polled.ready:
-                self._take()
-            for viewer in [n for n, each in self._trusted.items() if each in polled.ready]:
+            self._viewers_said(self._connections.write(writable))
+            self._viewers_said(self._connections.read(ready, now_ns))
+            for viewer in [n for n, each in self._trusted.items() if each in ready]:
                 self._hear(viewer)
             if time.monotonic() >= due_s:
                 due_s = time.monotonic() + TICK_S
-                self._server.repeat()
-                self._do(Tick())
+                self._tick()
         return None
 
     def close(self) -> None:
-        """The viewers' connections end, and those to the station."""
+        """The viewers' connections end, and those to the station; the layout goes."""
         for joined in [self._looking, *self._trusted.values()]:
             joined.close_at_once()
-        self._server.stop()
-        self._inbox.close()
+        self._connections.close()
+        self.layout.remove()
+
+    def _tick(self) -> None:
+        self._viewers_said(self._connections.tick(time.monotonic_ns()))
+        if self._server.graph_wanted:
+            self._serve(self._graph.graph())
+        self._do(Tick())
 
     # ---------------------------------------------------------------------------- the station
 
@@ -134,16 +160,22 @@ class LiveView:
     def _looked(self, event: ipc.Event) -> None:
         match event:
             case ipc.TopicMessage():
-                self._server.message(event)
+                self._serve(event)
+                self._graph.message(event, wanted=self._server.graph_wanted)
+                self.layout.message(event)
             case ipc.Topic():
-                self._server.topic(event)
+                self._serve(event)
+                self._graph.topic(event)
+                self.layout.topic(event)
             case ipc.Trouble(text):
-                self._server.notice(text, warning=True)
+                self._tell(text)
+                self._serve(Notice(None, text, warning=True))
             case _:
                 self._do(Told(LOOKING, event))
 
     def _hear(self, viewer: int) -> None:
-        events: list[StationEvent] = self._trusted[viewer].poll(0.0).events
+        joined = self._trusted.get(viewer)  # what came before may have ended it
+        events: list[StationEvent] = joined.poll(0.0).events if joined else []
         for event in events:
             if isinstance(event, StationEnded | ipc.Bye):
                 self._drop(viewer)
@@ -153,16 +185,29 @@ class LiveView:
 
     # ---------------------------------------------------------------------------- the viewers
 
-    def _take(self) -> None:
-        items: list[Item] = self._inbox.take()
-        for item in items:
-            self._do(item)
+    def _viewers_said(self, events: Iterable[Event]) -> None:
+        for event in events:
+            if isinstance(event, Refused):
+                self._refuse(event.why)
+            else:
+                self._serve(event)
+
+    def _refuse(self, why: str) -> None:
+        if why not in self._refused and len(self._refused) < MAX_REFUSED:
+            self._refused.add(why)
+            self._tell(why)
+            self._serve(Notice(None, why, warning=True))
+
+    def _serve(self, given: ServerInput) -> None:
+        for effect in self._server.handle(given):
+            if isinstance(effect, Frame):
+                self._viewers_said(self._connections.send(effect))
+            else:
+                self._do(effect)
 
     def _do(self, given: Input) -> None:
-        effects = self._viewers.handle(given, self._server.parameters, time.monotonic_ns())
-        for effect in effects:
+        for effect in self._viewers.handle(given, time.monotonic_ns()):
             self._perform(effect)
-        self._server.trust(self._viewers.trusted)
 
     def _perform(self, effect: Effect) -> None:
         match effect:
@@ -173,10 +218,8 @@ class LiveView:
                 self._send(viewer, command)
             case Close(viewer):
                 self._drop(viewer)
-            case Reply(call, answer):
-                self._inbox.answer(call, answer)
-            case Notice(text, warning):
-                self._server.notice(text, warning=warning)
+            case Reply() | Notice() | Values():
+                self._serve(effect)
 
     def _send(self, viewer: int, command: ipc.Command) -> None:
         if viewer == LOOKING:
@@ -196,8 +239,7 @@ class LiveView:
 def _give_way() -> None:
     """To the flight, on a machine that has too little of everything; where there is such a thing.
 
-    The server's library takes 16 MiB of any number of viewers: with no memory left this process
-    ends, and not another one.
+    With no memory left this process ends, and not another one.
     """
     if sys.platform != "win32":
         import resource
@@ -208,10 +250,12 @@ def _give_way() -> None:
             resource.setrlimit(resource.RLIMIT_DATA, (MAX_MEMORY_BYTES, most))
 
 
-def open_view(described: Description, address: Address) -> LiveView:
+def open_view(
+    described: Description, address: Address, tell: Callable[[str], None] | None = None
+) -> LiveView:
     """Join the station and listen.  Raises ExitError."""
     try:
-        return LiveView(described, address)
+        return LiveView(described, address, tell)
     except PortTakenError as error:
         raise ExitError(ExitCode.ADDRESS_IN_USE, str(error), TAKEN_HINT) from error
     except OSError as error:

@@ -12,10 +12,23 @@ from __future__ import annotations
 import hmac
 from dataclasses import dataclass, field
 
+import msgspec
+
 from gcs import ipc
+from gcs.live.bucket import Bucket
 from gcs.live.clicked_goals import BadMessageError, clicked_goal
-from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send
-from gcs.live.inputs import Called, Ended, Gone, Input, Published, Tick, Told
+from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send, Values
+from gcs.live.inputs import (
+    Call,
+    Called,
+    Ended,
+    Gone,
+    Input,
+    ParametersAsked,
+    Published,
+    Tick,
+    Told,
+)
 from gcs.live.parameters import Parameters
 from gcs.live.services import (
     SERVICES,
@@ -42,10 +55,8 @@ BURST_WRONG_CODES = 5.0
 """Of all viewers together: whoever comes anew for each try has no more of them."""
 LOOKING_A_SECOND = 20.0
 BURST_LOOKING = 30.0
-MAX_BUCKETS = 256
-"""Viewers whose rate of calls is remembered; of more, the one that came first is forgotten."""
 NOTICE_NS = 2_000_000_000
-"""A viewer's mistakes are told to all viewers, at most once in so long."""
+"""What is told to all viewers is told at most once in so long."""
 
 TOO_MANY_CODES = "too many wrong control codes were tried: try again in 5 s"
 NEEDS_CONTROL = "this viewer only looks: call take_control with the code that gcs has printed"
@@ -53,35 +64,16 @@ NEEDS_CONTROL = "this viewer only looks: call take_control with the code that gc
 
 @dataclass(slots=True)
 class _Waiting:
-    """A request that the station has not answered; `call` 0: it was a clicked goal."""
+    """A request that the station has not answered; without a call it was a clicked goal."""
 
-    call: int
+    call: Call | None
     until_ns: int
-
-
-@dataclass(slots=True)
-class _Bucket:
-    """So many a second, and a few more at once."""
-
-    per_second: float
-    burst: float
-    level: float
-    at_ns: int
-
-    def take(self, now_ns: int) -> bool:
-        self.level = min(self.burst, self.level + (now_ns - self.at_ns) * self.per_second / 1e9)
-        self.at_ns = now_ns
-        if self.level < 1.0:
-            return False
-        self.level -= 1.0
-        return True
 
 
 @dataclass(slots=True)
 class _Connection:
     """To the station: which requests wait for a verdict, and which clicked goals for an ending."""
 
-    bucket: _Bucket
     talk: Conversation = field(default_factory=Conversation)
     waiting: dict[int, _Waiting] = field(default_factory=dict)
     clicked: set[int] = field(default_factory=set)
@@ -93,12 +85,11 @@ class Viewers:
     def __init__(self, code: str, now_ns: int) -> None:
         """`code`: what `take_control` must bring."""
         self._code = code
-        looking = _Bucket(LOOKING_A_SECOND, BURST_LOOKING, BURST_LOOKING, now_ns)
-        self._connections = {LOOKING: _Connection(looking)}
-        self._buckets: dict[int, _Bucket] = {}
-        self._wrong_codes = _Bucket(
-            WRONG_CODES_A_SECOND, BURST_WRONG_CODES, BURST_WRONG_CODES, now_ns
-        )
+        self._looking = Bucket.full(LOOKING_A_SECOND, BURST_LOOKING, now_ns)
+        self._connections = {LOOKING: _Connection()}
+        self._buckets: dict[int, Bucket] = {}
+        self._wrong_codes = Bucket.full(WRONG_CODES_A_SECOND, BURST_WRONG_CODES, now_ns)
+        self._parameters = Parameters()
         self._snapshot: ipc.Snapshot | None = None
         self._noticed_ns = now_ns - NOTICE_NS
 
@@ -107,13 +98,15 @@ class Viewers:
         """Viewers that have brought the code."""
         return frozenset(self._connections) - {LOOKING}
 
-    def handle(self, given: Input, parameters: Parameters, now_ns: int) -> list[Effect]:
-        """What follows from `given`; `parameters` are those of this moment."""
+    def handle(self, given: Input, now_ns: int) -> list[Effect]:
+        """What follows from `given`."""
         match given:
             case Called():
-                return self._called(given, parameters, now_ns)
+                return self._called(given, now_ns)
             case Published():
-                return self._published(given, parameters, now_ns)
+                return self._published(given, now_ns)
+            case ParametersAsked():
+                return self._asked(given)
             case Gone(viewer):
                 return self._gone(viewer)
             case Told(viewer, event):
@@ -125,39 +118,36 @@ class Viewers:
 
     # ----------------------------------------------------------------------------- asking
 
-    def _called(self, call: Called, parameters: Parameters, now_ns: int) -> list[Effect]:
-        service = SERVICES.get(call.service)
-        if service is None:
-            return [_refused(call, "BAD_REQUEST", f"there is no service {call.service!r}")]
-        trusted = call.viewer in self._connections
-        if not self._bucket(call.viewer, now_ns).take(now_ns):
+    def _called(self, call: Called, now_ns: int) -> list[Effect]:
+        service, viewer = SERVICES[call.service], call.call.viewer
+        trusted = viewer in self._connections
+        if not self._bucket(viewer, now_ns).take(now_ns):
             return [_refused(call, "BUSY", f"more than {CALLS_A_SECOND:g} calls a second")]
         if not (trusted or service.anyone):
             return [_refused(call, "OTHER_OPERATOR", NEEDS_CONTROL)]
         try:
             request = request_of(call.service, call.payload)
-            ask = ask_of(call.service, request, parameters, self._snapshot)
+            ask = ask_of(call.service, request, self._parameters, self._snapshot)
         except BadCallError as error:
             return [_refused(call, "BAD_REQUEST", str(error))]
         effects: list[Effect] = []
         if isinstance(request, TakeControl) and not trusted:
-            why = self._why_not_trusted(call, request, now_ns)
+            why = self._why_not_trusted(request, now_ns)
             if why:
                 told = self._notice(TOO_MANY_CODES, now_ns) if why == TOO_MANY_CODES else []
                 return [_refused(call, "OTHER_OPERATOR", why), *told]
-            bucket = self._bucket(call.viewer, now_ns)
-            self._connections[call.viewer] = _Connection(bucket)
-            effects.append(Join(call.viewer))
+            self._connections[viewer] = _Connection()
+            effects.append(Join(viewer))
             trusted = True
-        sender = call.viewer if trusted else LOOKING
+        sender = viewer if trusted else LOOKING
         connection = self._connections[sender]
-        if sender == LOOKING and not connection.bucket.take(now_ns):
+        if sender == LOOKING and not self._looking.take(now_ns):
             return [_refused(call, "BUSY", "the viewers that look ask for too much together")]
         if len(connection.waiting) >= MAX_WAITING:
             return [_refused(call, "BUSY", "too many calls wait for the station")]
         return [*effects, self._send(sender, ask, call.call, now_ns)]
 
-    def _why_not_trusted(self, call: Called, request: TakeControl, now_ns: int) -> str:
+    def _why_not_trusted(self, request: TakeControl, now_ns: int) -> str:
         right = hmac.compare_digest(request.code.strip().encode(), self._code.encode())
         if not self._wrong_codes.take(now_ns):
             # Of the right one neither, so that a guess tells nothing.
@@ -165,48 +155,56 @@ class Viewers:
         if not right:
             return "that is not the code that gcs has printed"
         self._wrong_codes.level += 1.0
-        if not call.watching:
-            return "subscribe to a topic first: else nobody would notice that this viewer has gone"
         if len(self._connections) > MAX_TRUSTED:
             return f"{MAX_TRUSTED} viewers can have control in turn, and that many are there"
         return ""
 
-    def _published(self, message: Published, parameters: Parameters, now_ns: int) -> list[Effect]:
-        connection = self._connections.get(message.viewer)
+    def _published(self, message: Published, now_ns: int) -> list[Effect]:
+        viewer = message.viewer
+        connection = self._connections.get(viewer)
+        if not self._bucket(viewer, now_ns).take(now_ns):
+            return []
         if connection is None:
-            return self._notice(NEEDS_CONTROL, now_ns)
-        if not connection.bucket.take(now_ns) or len(connection.waiting) >= MAX_WAITING:
-            return self._notice(f"more than {CALLS_A_SECOND:g} goals a second", now_ns)
+            return [Notice(viewer, NEEDS_CONTROL, warning=True)]
+        if len(connection.waiting) >= MAX_WAITING:
+            return [Notice(viewer, "too many goals wait for the station", warning=True)]
         try:
             goal = clicked_goal(message.encoding, message.schema_name, message.data)
         except BadMessageError as error:
-            return self._notice(str(error), now_ns)
-        up_m = goal_height_m(parameters, self._snapshot)
+            return [Notice(viewer, str(error), warning=True)]
+        up_m = goal_height_m(self._parameters, self._snapshot)
         goal_enu = (goal.at_enu[0], goal.at_enu[1], up_m)
         ask = ipc.Ask(0, "goto", goal_enu=goal_enu, yaw_deg=goal.yaw_deg)
-        return [self._send(message.viewer, ask, 0, now_ns)]
+        return [self._send(viewer, ask, None, now_ns)]
 
-    def _send(self, sender: int, ask: ipc.Ask, call: int, now_ns: int) -> Send:
+    def _asked(self, asked: ParametersAsked) -> list[Effect]:
+        """Who only looks is told the values as they are, which says that it has set nothing."""
+        told: list[Effect] = []
+        if asked.set_to is not None and asked.viewer in self._connections:
+            before, self._parameters = self._parameters, self._parameters.changed(asked.set_to)
+            if self._parameters != before:
+                told.append(Values(None, msgspec.structs.asdict(self._parameters)))
+        values = msgspec.structs.asdict(self._parameters)
+        wanted = {name: values[name] for name in asked.names if name in values} or values
+        return [Values(asked.viewer, wanted, asked.request), *told]
+
+    def _send(self, sender: int, ask: ipc.Ask, call: Call | None, now_ns: int) -> Send:
         connection = self._connections[sender]
         sent = connection.talk.ask(ask).sent
         connection.waiting[sent.id] = _Waiting(call, now_ns + CALL_WAIT_NS)
         return Send(sender, sent)
 
-    def _bucket(self, viewer: int, now_ns: int) -> _Bucket:
+    def _bucket(self, viewer: int, now_ns: int) -> Bucket:
         known = self._buckets.get(viewer)
         if known is None:
-            if len(self._buckets) >= MAX_BUCKETS:
-                del self._buckets[next(iter(self._buckets))]
-            known = self._buckets[viewer] = _Bucket(
-                CALLS_A_SECOND, BURST_CALLS, BURST_CALLS, now_ns
-            )
+            known = self._buckets[viewer] = Bucket.full(CALLS_A_SECOND, BURST_CALLS, now_ns)
         return known
 
     def _notice(self, text: str, now_ns: int) -> list[Effect]:
         if now_ns - self._noticed_ns < NOTICE_NS:
             return []
         self._noticed_ns = now_ns
-        return [Notice(text, warning=True)]
+        return [Notice(None, text, warning=True)]
 
     # ---------------------------------------------------------------------------- answers
 
@@ -218,26 +216,28 @@ class Viewers:
         if connection is None or tracked is None:
             return []
         if isinstance(event, ipc.VerdictEvent):
-            return self._verdict(connection, event, tracked.label)
+            return self._verdict(viewer, connection, event, tracked.label)
         if isinstance(event, ipc.EndingEvent) and event.id in connection.clicked:
             connection.clicked.remove(event.id)
             text = event_text.outcome_line(tracked.label, event)
-            return [Notice(text, warning=not tracked.completed)]
+            return [Notice(viewer, text, warning=not tracked.completed)]
         return []
 
     @staticmethod
-    def _verdict(connection: _Connection, event: ipc.VerdictEvent, label: str) -> list[Effect]:
+    def _verdict(
+        viewer: int, connection: _Connection, event: ipc.VerdictEvent, label: str
+    ) -> list[Effect]:
         waiting = connection.waiting.pop(event.id, None)
         if waiting is None:
             return []
         sentence = event_text.refused_by_rule(event) or event.sentence or event.outcome
         accepted = event.outcome == "accepted"
-        if waiting.call:
+        if waiting.call is not None:
             answer = Answer(accepted, sentence, event.code, event.operation, event.numbers)
             return [Reply(waiting.call, answer)]
         if accepted:
             connection.clicked.add(event.id)
-        return [Notice(event_text.verdict_line(label, event), warning=not accepted)]
+        return [Notice(viewer, event_text.verdict_line(label, event), warning=not accepted)]
 
     # ---------------------------------------------------------------------- going, waiting
 
@@ -250,16 +250,16 @@ class Viewers:
         connection = self._connections.pop(viewer, None)
         waiting = connection.waiting.values() if connection else ()
         ended = Answer(False, "the station has ended this viewer's connection", "OPERATOR_LOST")
-        return [Reply(each.call, ended) for each in waiting if each.call]
+        return [Reply(each.call, ended) for each in waiting if each.call is not None]
 
     def _overdue(self, now_ns: int) -> list[Effect]:
         replies: list[Effect] = []
         late = Answer(False, f"no answer within {CALL_WAIT_NS / 1e9:g} s", "NO_ANSWER")
         for connection in self._connections.values():
-            due = [n for n, each in connection.waiting.items() if now_ns >= each.until_ns]
-            replies += [
-                Reply(each.call, late) for n in due if (each := connection.waiting.pop(n)).call
-            ]
+            for number, each in [*connection.waiting.items()]:
+                if now_ns >= each.until_ns:
+                    del connection.waiting[number]
+                    replies += [Reply(each.call, late)] if each.call is not None else []
         return replies
 
 

@@ -16,6 +16,7 @@ from gcs.cli.demo.script import FAILSAFES_ON, MISSION, SCRIPT, Step
 from gcs.operator.line_parser import parse_line
 from gcs.policy_file import load_policy
 from gcs.record.viewer.layout import PURPOSES, Purpose, layout_for
+from gcs.record.viewer.live_layout import live_layout
 from gcs.record.writer import Recorder
 from gcs.report import AttachmentItem, FsaItem, MetadataItem
 from gcs.request_words import SendRequests
@@ -222,4 +223,5 @@ def test_every_topic_and_field_of_the_layout_is_in_the_record(path: Path, purpos
 
 def test_the_layout_for_any_flight_names_only_what_a_flight_has(path: Path) -> None:
     known = fields(path)
-    assert {value for value in paths_in(layout_for(None)) if not resolves(known, value)} == set()
+    for made in (layout_for(None), live_layout([1], None, "abcd2345")):
+        assert {value for value in paths_in(made) if not resolves(known, value)} == set()

@@ -23,10 +23,11 @@ LONGEST_S = 3.0
 PIECE_BYTES = 65_536
 HANDSHAKE = (
     b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-    b"Origin: https://evil.example\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+    b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
     b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n"
 )
-TEXT, BINARY = 1, 2
+MORE, TEXT, BINARY, PING = 0, 1, 2, 9
+FINAL = 0x80
 LARGEST = (16 << 20) - 100
 
 
@@ -106,6 +107,27 @@ def _topics(rng: random.Random) -> bytes:
     return HANDSHAKE + _json({"op": "advertise", "channels": channels})
 
 
+def _foreign_page(rng: random.Random) -> bytes:
+    page = HANDSHAKE.replace(b"\r\n\r\n", b"\r\nOrigin: https://evil.example\r\n\r\n")
+    return page + rng.choice([_calls, _garbage])(rng)
+
+
+def _smallest_frames(rng: random.Random) -> bytes:
+    return HANDSHAKE + _frame(rng.choice([TEXT, PING]), b"") * 100_000
+
+
+def _a_message_without_end(rng: random.Random) -> bytes:
+    part = bytearray(_frame(MORE, b""))
+    part[0] &= ~FINAL
+    first = bytearray(_frame(TEXT, b"{"))
+    first[0] &= ~FINAL
+    return HANDSHAKE + bytes(first) + bytes(part) * 100_000
+
+
+def _headers_without_end(rng: random.Random) -> bytes:
+    return HANDSHAKE[:-2] + b"X-More: %d\r\n" % rng.randint(1, 9) * 100_000
+
+
 def _silent(rng: random.Random) -> bytes:
     return b""
 
@@ -120,6 +142,10 @@ KINDS: tuple[Callable[[random.Random], bytes], ...] = (
     _never_reads,
     _subscribes_again_and_again,
     _topics,
+    _foreign_page,
+    _smallest_frames,
+    _a_message_without_end,
+    _headers_without_end,
     _silent,
 )
 

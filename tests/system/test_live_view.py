@@ -9,12 +9,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from websockets.exceptions import InvalidStatus
 
 from gcs.exit_codes import ExitCode
 from gcs.live.program import Opened, Wanted, opened_by
 from gcs.mcap_file.format import Message
 from gcs.mcap_file.reader import Reading
 from gcs.operator.errors import ExitError
+from tests.system.patience import until
 from tests.system.station import Station, simulated
 from tests.system.viewer import Viewer, viewer
 
@@ -85,6 +87,13 @@ def test_a_goal_that_is_clicked_inside_is_flown_and_one_outside_refused_with_the
         sources = {heard.json["source"] for heard in looker.of(DECISIONS)}
         assert sources == {"operator 3"}  # 1 has started the station, 2 is the live view
 
+        looker.click(1.0, 0.0, frame="base_link")
+        looker.until(lambda: told(looker, "must be in the frame 'map'"), "the refusal")
+        looker.send({"op": "subscribeConnectionGraph"})
+        heartbeats = "vehicle 1/1/HEARTBEAT"
+        looker.until(lambda: heartbeats in looker.graph, "the connection graph")
+        assert looker.graph[heartbeats] == ["vehicle 1/1"]
+
         looker.messages.clear()
         looker.click(900.0, 0.0)
         looker.until(lambda: bool(looker.of(DECISIONS)), "the refusal")
@@ -154,23 +163,39 @@ def test_when_the_viewer_in_control_goes_the_vehicle_holds_and_control_returns(
     assert kinds == ["OperatorJoined", "OperatorLine", "OperatorLine", "OperatorGone"]
 
 
-@pytest.mark.thorough
-def test_a_late_viewer_sees_what_was_said_only_once(tmp_path: Path) -> None:
-    once = ("/geofence", "/tf_static", "/vehicle/1/model")
+def test_a_late_viewer_has_the_log_the_decisions_the_trail_and_what_was_said_only_once(
+    tmp_path: Path,
+) -> None:
+    """By the older name of the protocol."""
+    kept = ("/geofence", "/tf_static", "/vehicle/1/model", "/gate/fence", "/vehicle/1/path")
     with simulated(tmp_path) as operator:
-        operator.fly("arm", "takeoff 2")
         live = opened(operator)
-        with viewer(live.url) as first, viewer(live.url) as second:
-            first.subscribe(*once)
-            first.until(lambda: all(map(first.of, once)), "what is latched")
-            second.subscribe(*once)
-            second.until(lambda: all(map(second.of, once)), "what is latched")
+        operator.fly("arm", "takeoff 2")
+        with viewer(live.url, "foxglove.websocket.v1") as late:
+            late.subscribe(*kept, "/log", DECISIONS)
+            late.until(lambda: all(map(late.of, kept)), "what is kept")
+            late.until(lambda: ("takeoff", "complete") in decided(late), "the decisions")
+            late.until(lambda: len(late.of("/log")) > 5, "the log")
             log_path = operator.log_path
         operator.leave()
     recorded = {record.data for record in Reading(log_path) if isinstance(record, Message)}
-    for topic in once:
-        assert first.of(topic)[-1].data == second.of(topic)[-1].data
-        assert first.of(topic)[-1].data in recorded
+    assert {heard.data for heard in late.messages} <= recorded
+
+
+def test_a_page_that_is_not_known_is_not_let_in_and_the_others_are_told(tmp_path: Path) -> None:
+    with watched(tmp_path) as (_, looker, live):
+        with (
+            pytest.raises(InvalidStatus, match="403"),
+            viewer(live.url, origin="https://evil.example"),
+        ):
+            pass
+        looker.until(lambda: told(looker, "a page of 'https://evil.example'"), "who was not let in")
+        with viewer(live.url, origin="https://app.foxglove.dev") as page:
+            assert page.info["name"] == "mavgate"
+        layout = json.loads(Path(live.layout).read_text())["configById"]
+        code = json.loads(layout["CallService!take_control"]["requestPayload"])
+        assert code == {"code": live.code}
+    until(lambda: not Path(live.layout).exists(), "the layout goes with the live view")
 
 
 @pytest.mark.thorough

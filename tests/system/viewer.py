@@ -1,12 +1,11 @@
-"""A viewer in the test's own process: Foxglove's WebSocket protocol (`foxglove.sdk.v1`) as it is
-described in https://github.com/foxglove/ws-protocol, spoken with the websockets package.
+"""A viewer in the test's own process: Foxglove's WebSocket protocol as it is described in
+https://github.com/foxglove/ws-protocol, spoken with the websockets package.
 """
 
 from __future__ import annotations
 
 import itertools
 import json
-import re
 import struct
 import time
 from collections.abc import Callable, Iterator
@@ -15,10 +14,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin, Subprotocol
 
 from tests.system.patience import PATIENT_S
 
-SUBPROTOCOL = "foxglove.sdk.v1"
 MESSAGE, SERVICE_RESPONSE = 1, 3
 CLIENT_MESSAGE, SERVICE_REQUEST = 1, 2
 _MESSAGE_HEADER = struct.Struct("<BIQ")
@@ -51,6 +50,9 @@ class Viewer:
     info: dict[str, Any] = field(default_factory=dict)
     _subscribed: dict[int, str] = field(default_factory=dict)
     _responses: dict[int, dict[str, Any]] = field(default_factory=dict)
+    failures: list[str] = field(default_factory=list)
+    graph: dict[str, list[str]] = field(default_factory=dict)
+    """Topic -> nodes that publish it."""
     _numbers: Iterator[int] = field(default_factory=lambda: itertools.count(1))
 
     def until(self, condition: Callable[[], bool], what: str, timeout_s: float = PATIENT_S) -> None:
@@ -70,7 +72,7 @@ class Viewer:
             number = next(self._numbers)
             self._subscribed[number] = topic
             wanted.append({"id": number, "channelId": self.topics[topic]["id"]})
-        self._send({"op": "subscribe", "subscriptions": wanted})
+        self.send({"op": "subscribe", "subscriptions": wanted})
 
     def call(self, service: str, **request: object) -> dict[str, Any]:
         """Call it and wait for the response."""
@@ -85,28 +87,28 @@ class Viewer:
 
     def advertise(self, number: int, topic: str, schema_name: str, encoding: str = "json") -> None:
         channel = {"id": number, "topic": topic, "encoding": encoding, "schemaName": schema_name}
-        self._send({"op": "advertise", "channels": [channel]})
+        self.send({"op": "advertise", "channels": [channel]})
 
     def publish(self, number: int, data: bytes) -> None:
         self.connection.send(struct.pack("<BI", CLIENT_MESSAGE, number) + data)
 
-    def click(self, east_m: float, north_m: float) -> None:
+    def click(self, east_m: float, north_m: float, frame: str = "map") -> None:
         """As the 3D panel's publish tool does; the point is on the ground of the panel."""
         self.advertise(1, "/clicked_point", "geometry_msgs/PointStamped")
         point = {"x": east_m, "y": north_m, "z": 0.0}
-        stamped = {"header": {"stamp": {"sec": 1, "nsec": 2}, "frame_id": "map"}, "point": point}
+        stamped = {"header": {"stamp": {"sec": 1, "nsec": 2}, "frame_id": frame}, "point": point}
         self.publish(1, json.dumps(stamped).encode())
 
     def set_parameter(self, name: str, value: float) -> None:
         parameters = [{"name": name, "value": value}]
         self.parameters.pop(name, None)
-        self._send({"op": "setParameters", "parameters": parameters, "id": "set"})
+        self.send({"op": "setParameters", "parameters": parameters, "id": "set"})
         self.until(lambda: name in self.parameters, f"the answer about {name}")
 
     def of(self, topic: str) -> list[Heard]:
         return [heard for heard in self.messages if heard.topic == topic]
 
-    def _send(self, message: dict[str, object]) -> None:
+    def send(self, message: dict[str, object]) -> None:
         self.connection.send(json.dumps(message))
 
     def _take(self, data: str | bytes) -> None:
@@ -130,28 +132,27 @@ class Viewer:
             case "advertiseServices":
                 self.services |= {each["name"]: each["id"] for each in message["services"]}
             case "status":
-                self._status(message["message"])
+                self.statuses.append(message["message"])
             case "parameterValues":
                 self.parameters |= {each["name"]: each["value"] for each in message["parameters"]}
-
-    def _status(self, text: str) -> None:
-        unknown = re.fullmatch(r"Unknown channel ID: (\d+)", text)
-        if unknown is None:
-            self.statuses.append(text)
-            return
-        # The server advertises a new channel a moment before it takes subscriptions to it.
-        time.sleep(0.05)
-        (topic,) = (t for t, each in self.topics.items() if each["id"] == int(unknown[1]))
-        self.subscribe(topic)
+            case "serviceCallFailure":
+                self.failures.append(message["message"])
+            case "connectionGraphUpdate":
+                published = message["publishedTopics"]
+                self.graph = {each["name"]: each["publisherIds"] for each in published}
 
 
 @contextmanager
-def viewer(url: str) -> Iterator[Viewer]:
+def viewer(
+    url: str, subprotocol: str = "foxglove.sdk.v1", origin: str | None = None
+) -> Iterator[Viewer]:
     """Connected, and it knows the topics and services that are there."""
     with connect(
         url,
-        subprotocols=[SUBPROTOCOL],
+        subprotocols=[Subprotocol(subprotocol)],
+        origin=Origin(origin) if origin else None,
         max_size=None,
+        max_queue=None,  # it answers pings while the test does something else
         open_timeout=PATIENT_S,
         ping_timeout=PATIENT_S,
     ) as connection:

@@ -18,6 +18,7 @@ from gcs.report import FenceItem, FenceShape
 
 EARTH_RADIUS_M = 6_371_000.0
 LEAST_RADIUS_M = 3.0
+ANY_WIDTH_M, ANY_HEIGHT_M = 20.0, 10.0
 FENCE_FACTOR = 4.0
 """A zone that is more times larger than the flight does not decide what is seen."""
 
@@ -110,6 +111,19 @@ def extent_of(track: Sequence[Vec3], fence: FenceItem | None) -> Extent | None:
     low, high = _box(corners)
     origin = None if fence is None or fence.origin is None else fence.origin[:2]
     return Extent(low, high, origin)
+
+
+def fence_extent(fence: FenceItem | None) -> Extent:
+    """About the whole fence, for a viewer that is to fly in it; where none is known, about the
+    origin."""
+    corners: list[Vec3] = [(0.0, 0.0, 0.0)]
+    zones = () if fence is None else fence.zones
+    for zone in zones:
+        corners += _zone_box(zone, 0.0, ANY_HEIGHT_M)
+    if not zones:
+        corners += [(-ANY_WIDTH_M, -ANY_WIDTH_M, 0.0), (ANY_WIDTH_M, ANY_WIDTH_M, ANY_HEIGHT_M)]
+    origin = None if fence is None or fence.origin is None else fence.origin[:2]
+    return Extent(*_box(corners), origin)
 
 
 def _box(points: Iterable[Vec3]) -> tuple[Vec3, Vec3]:

@@ -8,7 +8,7 @@ each purpose the panels and how they share the window.  Here it is filled in:
                     `points` = not joined, for what comes in stretches: a line would run across gaps
     {first} {each}  topics of the first vehicle; the same line again for every vehicle
     a|b             b in a record that has no topic a
-    $name           a value, of the path, the lines or `panel_scene.py`
+    $name           a value, of the path, the lines, `panel_scene.py`, or beside the title
 
 A panel is made only where the record has what it shows, so no panel comes up with an alert.
 """
@@ -16,7 +16,7 @@ A panel is made only where the record has what it shows, so no panel comes up wi
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -26,8 +26,9 @@ from gcs.mcap_file.reader import Progress
 from gcs.record.viewer.extent import Extent, survey
 from gcs.record.viewer.panel_scene import Body, scene, street_map
 
-Purpose: TypeAlias = Literal["one", "fleet", "lab"]
+Purpose: TypeAlias = Literal["one", "fleet", "lab", "live"]
 PURPOSES: tuple[Purpose, ...] = ("one", "fleet", "lab")
+"""Of records; `live` is filled in by `live_layout.py`."""
 
 _LEAVES = (
     *("tf", "model", "path", "setpoint", "target", "stop", "odometry"),
@@ -42,7 +43,11 @@ _COMMON = (
 
 def any_flight(vehicles: int = 1) -> frozenset[str]:
     """Topics of an ordinary flight of vehicles 1, 2, ..., for a layout made before the flight."""
-    numbers = range(1, vehicles + 1)
+    return any_flight_of(range(1, vehicles + 1))
+
+
+def any_flight_of(numbers: Iterable[int]) -> frozenset[str]:
+    """The same of the vehicles with these numbers."""
     return frozenset(
         [*_COMMON, *(f"/vehicle/{number}/{leaf}" for number in numbers for leaf in _LEAVES)]
     )
@@ -85,7 +90,7 @@ def layout(
     numbers = _vehicles(topics)
     suffixed = suffixed or numbers[1:]
     bodies = [Body(n, f"base_link_{n}" if n in suffixed else "base_link") for n in numbers]
-    if purpose != "fleet":
+    if purpose not in ("fleet", "live"):
         del bodies[1:]
     if purpose == "lab":
         extent = _CAGE
@@ -131,6 +136,8 @@ class _Filler:
             return scene(self._bodies, self._topics, self._extent, shown[0])
         if kind == "map":
             return street_map(self._bodies, self._topics, self._extent)
+        if isinstance(shown[0], dict):  # a panel that shows nothing of the record
+            return shown[0]
         if isinstance(shown[0], str):
             path = self._path(shown[0], self._bodies[0])
             return {"path": path} if self._has(path) else None

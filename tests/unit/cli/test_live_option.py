@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 from gcs.cli.live_option import ADDRESS, LIVE, lines_about
 from gcs.cli.options import with_options
+from gcs.live.program import Opened
 
 
 @pytest.mark.parametrize(
@@ -71,7 +72,8 @@ def test_the_option_takes_an_address_or_none(
     ],
 )
 def test_whoever_lets_other_machines_in_is_told(host: str, warned: bool) -> None:
-    lines = lines_about("ws://x:1", "abcd", host)
+    lines = lines_about(Opened("ws://x:1", "abcd", "logs/x_viewer-1.json"), host)
     assert lines[0] == "live view: ws://x:1"
+    assert lines[2].strip() == "logs/x_viewer-1.json"
     assert '{"code": "abcd"}' in "\n".join(lines)
     assert ("can reach" in lines[-1]) == warned

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs.live.clicked_goals import (
-    MAX_MESSAGE_BYTES,
+    MAX_GOAL_BYTES,
     BadMessageError,
     ClickedGoal,
     clicked_goal,
@@ -78,11 +78,19 @@ def test_a_pose_without_a_direction_has_no_heading() -> None:
 
 def test_the_frames_of_the_record_are_known_and_no_others() -> None:
     at = {"x": 1.0, "y": 2.0, "z": -3.0}
-    for frame in ("map", "/map", ""):
+    for frame in ("map", "/map"):
         assert clicked_goal("json", POINT, in_json(frame, point=at)).at_enu == (1.0, 2.0, -3.0)
     assert clicked_goal("json", POINT, in_json("local_ned", point=at)).at_enu == (2.0, 1.0, 3.0)
-    with pytest.raises(BadMessageError, match="'base_link'"):
-        clicked_goal("json", POINT, in_json("base_link", point=at))
+    for frame in ("base_link", "local_ned_2", ""):
+        with pytest.raises(BadMessageError, match=f"'map', not in '{frame}'"):
+            clicked_goal("json", POINT, in_json(frame, point=at))
+
+
+def test_a_heading_in_north_east_down_is_clockwise_from_north() -> None:
+    """About z, which points down: 90 degrees are east."""
+    pose = {"position": {"x": 1.0, "y": 2.0, "z": -3.0}, "orientation": about_up(90.0)}
+    goal = clicked_goal("json", POSE, in_json("local_ned", pose=pose))
+    assert goal.yaw_deg == pytest.approx(90.0)
 
 
 @pytest.mark.parametrize(
@@ -93,7 +101,7 @@ def test_the_frames_of_the_record_are_known_and_no_others() -> None:
         ("json", POINT, b"{}", "neither a point nor a pose"),
         ("json", POINT, in_json("map", point={"x": "east", "y": 0}), "cannot be read"),
         ("json", POINT, b"[" * 4_000, "cannot be read"),
-        ("json", POINT, b" " * (MAX_MESSAGE_BYTES + 1), "bytes"),
+        ("json", POINT, b" " * (MAX_GOAL_BYTES + 1), "bytes"),
         ("ros1", POINT, b"", "cannot be read as ros1"),
         ("ros1", POINT, in_ros1("map", 1.0, 2.0), "cannot be read as ros1"),
         ("ros1", POINT, struct.pack("<IIII", 0, 0, 0, 0xFFFFFFFF), "cannot be read as ros1"),

@@ -10,8 +10,10 @@ from typing import Any
 import pytest
 
 from gcs.frames import Vec3
+from gcs.live.services import request_of
 from gcs.record.viewer.extent import extent_of, survey
 from gcs.record.viewer.layout import PURPOSES, Purpose, any_flight, layout, layout_for
+from gcs.record.viewer.live_layout import live_layout
 from gcs.record.viewer.panel_scene import cell_size, zoom
 from gcs.report import FenceItem, FenceShape, GeodeticItem, RecordItem
 from tests.sample_files import elsewhere
@@ -199,3 +201,35 @@ def test_cells_are_round_numbers(least: float, cell: float) -> None:
 def test_the_map_zooms_out_by_one_for_twice_the_width() -> None:
     assert zoom(100.0, 47.0) - zoom(200.0, 47.0) == 1
     assert zoom(1e9, 0.0) == 2
+
+
+def test_in_the_layout_of_a_live_view_a_click_is_in_the_map_and_every_button_is_a_service() -> None:
+    yard = FenceShape(
+        "yard", True, [(-40.0, -30.0), (60.0, -30.0), (60.0, 30.0)], None, 0.0, 0.0, 9
+    )
+    made: Any = live_layout([3, 1], FenceItem([yard], None), "abcd2345")
+    main = made["configById"]["3D!main"]
+    assert (main["followMode"], main["followTf"]) == ("follow-none", "map")
+    assert main["publish"]["pointTopic"]
+    assert {"frame:base_link", "frame:base_link_1"} <= set(main["transforms"])
+    assert corners_seen(camera_of(made), [(-40, -30, 0), (60, -30, 9), (60, 30, 9)])
+    buttons = {
+        config["serviceName"]: json.loads(config["requestPayload"])
+        for name, config in made["configById"].items()
+        if name.startswith("CallService!")
+    }
+    assert {"take_control", "abort", "hold", "land"} <= set(buttons)
+    for service, request in buttons.items():
+        assert request_of(service, json.dumps(request).encode())
+    assert buttons["take_control"] == {"code": "abcd2345"}
+    assert _leaves(made["layout"]) == set(made["configById"])
+
+
+def test_before_the_fence_is_known_the_live_layout_stands_in_the_map_too() -> None:
+    made: Any = live_layout([], None, "abcd2345")
+    assert made["configById"]["3D!main"]["followTf"] == "map"
+    assert corners_seen(camera_of(made), [(-20, -20, 0), (20, 20, 0)])
+
+
+def _leaves(tree: Any) -> set[str]:
+    return {tree} if isinstance(tree, str) else _leaves(tree["first"]) | _leaves(tree["second"])
