@@ -1,7 +1,7 @@
 """Pictures of the keyboard screen in flight, as SVG: `python tools/screenshots.py [FOLDER]`.
 
 Flies `vehicle-sim` with a real station, without a terminal, and saves what the screen shows:
-a refusal before Enter, a mission with its path, GPS lost with its alarm, a typed line.
+a refusal before Enter, a mission with its path and its items, GPS lost with its alarm, typed lines.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ async def flown(columns: int, rows: int, folder: Path, shots: set[str]) -> None:
     port = free_port()
     with tempfile.TemporaryDirectory() as logs:
         faults = Path(logs, "faults.toml")
-        faults.write_text(GPS_LOST.format(at_s=56))
+        faults.write_text(GPS_LOST.format(at_s=75))
         argv = [sys.executable, "-m", "vehicle_sim", "--link", f"udpout://127.0.0.1:{port}"]
         argv += ["--wind", "4,225,0.5", "--fault", str(faults)]
         vehicle = subprocess.Popen(argv, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -103,6 +103,10 @@ async def flight(app: FlyApp, pilot: Pilot[None], folder: Path, name: str, shots
     await pilot.pause(1.5)
     await shot("refused")
     await pilot.press("v")
+    await typed(pilot, "goto 500 0 2")
+    await pilot.pause(1.5)
+    await shot("typed")
+    await pilot.press("escape")
     await typed(pilot, "mission fly s")
     await pilot.press("tab")
     await shot("line")
@@ -111,6 +115,10 @@ async def flight(app: FlyApp, pilot: Pilot[None], folder: Path, name: str, shots
     await pilot.press("v", "z")
     await pilot.pause(14.0)
     await shot("mission")
+    await pilot.press("I")
+    await pilot.pause(0.3)
+    await shot("items")
+    await pilot.press("I")
     await until(app, pilot, lambda: "GPS LOST" in app.scene.alarms.words())
     await pilot.pause(3.0)
     await shot("gps-lost")
@@ -119,8 +127,8 @@ async def flight(app: FlyApp, pilot: Pilot[None], folder: Path, name: str, shots
 def main() -> None:
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "docs")
     every = {"refused", "mission", "gps-lost"}
-    asyncio.run(flown(80, 24, folder, {*every, "line"}))
-    asyncio.run(flown(120, 40, folder, every))
+    asyncio.run(flown(80, 24, folder, {*every, "line", "typed", "items"}))
+    asyncio.run(flown(120, 40, folder, {*every, "items"}))
     asyncio.run(flown(200, 60, folder, every))
 
 

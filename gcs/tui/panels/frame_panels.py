@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import groupby
+
 from rich.table import Table
 from rich.text import Text
 
@@ -106,21 +108,28 @@ def footer(columns: int, keymap: Keymap = DEFAULT) -> Text:
 
 
 def help_table(keymap: Keymap = DEFAULT) -> Table:
-    """Every key, in two columns of sections."""
-    page = Table.grid(padding=(0, 3))
-    columns: list[Table] = []
+    """Every key, a row each, in two columns: as few rows as 80x24 has."""
+    rows: list[tuple[Text, Text]] = []
     for title, keys in keymap.sections:
-        section = Table.grid(padding=(0, 1))
-        section.add_row("", Text(title, "bold"))
-        for key in keys:
-            section.add_row(Text(key.shown, look.PENDING, justify="right"), key.help)
-        columns.append(section)
-    left = Table.grid()
-    for section in (columns[0], columns[2]):
-        left.add_row(section)
-        left.add_row("")
-    page.add_row(left, columns[1])
+        rows.append((Text(), Text(title, "bold")))
+        for told, group in groupby(keys, key=lambda key: key.help):
+            rows.append((Text(_together([key.shown for key in group]), look.PENDING), Text(told)))
+    half = (len(rows) + 1) // 2
+    page = Table.grid(padding=(0, 3))
+    columns = [Table.grid(padding=(0, 1)) for _ in range(2)]
+    for n, (shown, told) in enumerate(rows):
+        shown.justify = "right"
+        columns[n // half].add_row(shown, told)
+    page.add_row(*columns)
     return page
+
+
+def _together(shown: list[str]) -> str:
+    """Keys that do the same in other directions: `⇧↑↓←→`."""
+    begin = shown[0][0]
+    if len(shown) == 1 or not all(key.startswith(begin) for key in shown):
+        return " ".join(shown)
+    return begin + "".join(key.removeprefix(begin) for key in shown)
 
 
 def farewell(scene: Scene) -> Text:

@@ -27,7 +27,7 @@ def draw(scene: Scene) -> Text:
     severity = "NOMINAL" if seen is None else seen.severity
     lit = f"reverse {look.SEVERITY.get(severity, look.BAD)} bold".replace("bold bold", "bold")
     before = "" if scene.last_move is None else scene.last_move.before
-    chart = Text(no_wrap=True, end="")
+    chart = Text(no_wrap=True, end="", overflow="ellipsis")
     for left, right in ROWS:
         for state in (left, right):
             style = (

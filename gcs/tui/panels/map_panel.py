@@ -142,9 +142,9 @@ def _legend(columns: int, *, mission: bool, own: bool) -> Text:
         (ACTIVE, look.ACTIVE, "active"),
         (HOME, look.HOME, "home"),
         *([("┄", look.MISSION, "mission")] if mission else []),
+        *([("┄", look.OWN_FENCE, "its own")] if own else []),
         ("─", look.FENCE, "fence"),
         ("╌", look.NO_FLY, "no-fly"),
-        *([("┄", look.OWN_FENCE, "its own")] if own else []),
     )
     legend = Text(" ", end="", no_wrap=True)
     for char, style, name in parts:

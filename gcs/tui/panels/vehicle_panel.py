@@ -30,7 +30,7 @@ SHORT_MIN = 3.0
 def draw(scene: Scene) -> Text:
     """Rows of 32 cells, the most needed first: a small screen cuts the last ones."""
     seen = scene.snapshot
-    panel = Text(no_wrap=True, end="")
+    panel = Text(no_wrap=True, end="", overflow="ellipsis")
     if seen is None or not seen.vehicle:
         panel.append("no vehicle heard yet\n", look.WARN)
         for endpoint in scene.talk.hello.endpoints if scene.talk.hello else ["starting the link …"]:

@@ -16,7 +16,7 @@ from gcs.operator.client import StationEnded
 from gcs.operator.conversation import Conversation
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.tui.app import FlyApp
-from gcs.tui.keymap import keymap
+from gcs.tui.keymap import DEFAULT, keymap
 from gcs.tui.panels.panel import Panel
 from gcs.tui.result import SessionResult, print_result, until_hello
 from tests.shares import one_in
@@ -134,6 +134,17 @@ def test_under_the_help_page_any_key_closes_it_and_does_nothing_else(key: str) -
         assert station.requests() == ["arm"]
 
     flown(script)
+
+
+def test_the_help_page_has_every_key_on_a_small_terminal() -> None:
+    async def script(app: FlyApp, _station: ListeningStation, pilot: Pilot[None]) -> None:
+        await pilot.press("question_mark")
+        await drawn(app, pilot)
+        shown = screen_text(app)
+        assert [key.help for key in DEFAULT.keys if key.help not in shown] == []
+        assert "any key closes this" in shown
+
+    flown(script, (80, 24))
 
 
 def test_under_the_help_page_space_aborts_and_closes_it() -> None:
