@@ -10,7 +10,7 @@ DOCS   := $(VENV)/.docs-installed
 CLIENTS := .clients
 TESTED  := $(CLIENTS)/mavsdk/.installed $(CLIENTS)/mavsdk3/.installed $(CLIENTS)/pymavlink/.installed
 SLOWER  := tests/clients/test_mavproxy.py tests/clients/test_dronekit.py
-OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed
+OTHERS  := $(CLIENTS)/mavproxy/.installed $(CLIENTS)/dronekit/.installed $(CLIENTS)/foxglove/.installed
 # Beside the tests that compute run those in which separate processes mostly wait for real time:
 # four of these at once last no longer than what computes, which gives way to them.
 WAIT    := $(BIN)/python -m pytest tests/clients tests/system -n 4 --dist worksteal $(SLOWER:%=--ignore=%)
@@ -50,7 +50,7 @@ types: $(TEST) ## mypy --strict
 contracts: $(TEST) ## import contracts
 	$(BIN)/lint-imports --no-cache
 
-clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVSDK 4 and 3, pymavlink, MAVProxy, DroneKit
+clients: $(TEST) $(TESTED) $(OTHERS) ## fly with all other ground stations: MAVSDK 4 and 3, pymavlink, MAVProxy, DroneKit, a viewer's page
 	$(BIN)/python -m pytest tests/clients -v
 
 real: $(TEST) ## fly a real PX4 and a real ArduCopter (docs/real.md), judged by their simulations; ARGS="--smoke" is short

@@ -45,9 +45,12 @@ class Page:
         return self.browser.call(method, self.session, **params)
 
     def open(self, path: Path) -> None:
+        self.go(path.as_uri())
+
+    def go(self, url: str) -> None:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        self.call("Page.navigate", url=path.as_uri())
+        self.call("Page.navigate", url=url)
         self.browser.wait_for("Page.loadEventFired", self)
 
     def evaluate(self, script: str) -> Any:
