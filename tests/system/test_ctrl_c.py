@@ -1,4 +1,7 @@
-"""Ctrl-C while `gcs fly` starts: no traceback, no process left, exit 130."""
+"""Ctrl-C while a command starts: no traceback, no process left, exit 130.
+
+`python -m tools.ctrl_c` does this to every command there is.
+"""
 
 from __future__ import annotations
 
@@ -45,10 +48,12 @@ class Interrupted:
 
 
 def interrupt(at_s: float, *words: str) -> Interrupted:
-    """A Ctrl-C reaches the whole group of processes, as from a terminal."""
+    """`gcs` and these words, in a folder of its own.  A Ctrl-C reaches the whole group of
+    processes, as from a terminal."""
     with tempfile.TemporaryDirectory() as folder:
         process = subprocess.Popen(
-            [sys.executable, "-m", "gcs", "fly", "--sim", *words, "--log-dir", folder],
+            [sys.executable, "-m", "gcs", *words],
+            cwd=folder,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -57,7 +62,8 @@ def interrupt(at_s: float, *words: str) -> Interrupted:
         )
         time.sleep(at_s)
         started = descendants(process.pid)
-        os.killpg(process.pid, signal.SIGINT)
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGINT)
         try:
             told, _ = process.communicate(timeout=ENDS_WITHIN_S)
         except subprocess.TimeoutExpired:
@@ -70,5 +76,17 @@ def interrupt(at_s: float, *words: str) -> Interrupted:
 
 @pytest.mark.parametrize("at_s", one_in(3, [0.2, 0.4, 0.6, 0.9, 1.3, 2.0]))
 def test_a_ctrl_c_at_the_start_ends_it_without_a_traceback_or_a_process_left(at_s: float) -> None:
-    ended = interrupt(at_s, "--plain")
+    ended = interrupt(at_s, "fly", "--sim", "--plain")
     assert ended.good or ended.before_us, ended
+
+
+NOBODY = "--link udpin://127.0.0.1:0"
+
+
+@pytest.mark.parametrize(
+    "line",
+    one_in(3, [f"param list {NOBODY}", "mission show demo", f"topic hz {NOBODY}"]),
+)
+def test_any_other_command_ends_so_or_has_ended_before(line: str) -> None:
+    ended = interrupt(0.3, *line.split())
+    assert ended.good or ended.before_us or ended.exit_code == 0, ended
