@@ -26,6 +26,8 @@ class Admission:
 
     def why_refused(self, origin: str | None, host: str | None) -> str:
         """A sentence; empty where it is let in.  A program that is no browser tells no origin."""
+        if origin == "null" and origin not in self.allowed:
+            return "a page that does not tell its origin ('null') is not let in"
         if origin is not None and not self._knows_origin(origin):
             return f"a page of {origin[:80]!r} is not let in (gcs live --allow {origin[:80]})"
         name = _host_of(f"//{host or ''}")

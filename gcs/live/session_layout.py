@@ -11,14 +11,13 @@ import os
 import re
 from pathlib import Path
 
-import msgspec
-
 from gcs import ipc
+from gcs.record.fence_topic import FENCE_TOPIC
+from gcs.record.viewer.extent import fence_of
 from gcs.record.viewer.live_layout import live_layout
 from gcs.report import FenceItem
 
 _VEHICLE = re.compile(r"/vehicle/(\d+)/")
-_fence = msgspec.json.Decoder(FenceItem)
 
 
 class SessionLayout:
@@ -35,7 +34,7 @@ class SessionLayout:
         self._write()
 
     def topic(self, told: ipc.Topic) -> None:
-        if told.topic == "/gate/fence":
+        if told.topic == FENCE_TOPIC:
             self._fence_number = told.number
         found = _VEHICLE.match(told.topic)
         if found is not None and (number := int(found[1])) not in self._vehicles:
@@ -45,7 +44,7 @@ class SessionLayout:
     def message(self, told: ipc.TopicMessage) -> None:
         if told.number == self._fence_number and told.data != self._fence_data:
             self._fence_data = told.data
-            self._fence = _fence.decode(told.data)
+            self._fence = fence_of(told.data)
             self._write()
 
     def remove(self) -> None:

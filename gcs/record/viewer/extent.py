@@ -90,7 +90,7 @@ def survey(path: Path, progress: Progress | None = None) -> Survey:
             if _STATE.fullmatch(topic):
                 track += _places(record.data)
             elif topic == FENCE_TOPIC:
-                fence = _fence_of(record.data) or fence
+                fence = fence_of(record.data) or fence
             elif topic == "/tf_static":
                 frames = record.data
     suffixed = frozenset(int(one) for one in _SUFFIXED.findall(frames))
@@ -153,7 +153,7 @@ def _places(data: bytes) -> list[Vec3]:
     return [(at.east_m, at.north_m, at.up_m)]
 
 
-def _fence_of(data: bytes) -> FenceItem | None:
+def fence_of(data: bytes) -> FenceItem | None:
     try:
         return read(data)
     except msgspec.DecodeError:

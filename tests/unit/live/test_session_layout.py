@@ -11,6 +11,7 @@ import msgspec
 
 from gcs import ipc
 from gcs.live.session_layout import SessionLayout
+from gcs.record.fence_topic import written as written_fence
 from gcs.report import FenceItem, FenceShape
 
 FENCE = FenceItem([FenceShape("yard", True, [], (100.0, 0.0), 10.0, 0.0, 9.0)], None)
@@ -27,7 +28,7 @@ def test_it_stands_beside_the_record_and_follows_vehicles_and_fence(tmp_path: Pa
     assert written(layout)["Indicator!fsa"]["path"] == "/vehicle/1/fsa.state"
     layout.topic(ipc.Topic(1, "/vehicle/7/state", "json", "S", "jsonschema", b"{}"))
     layout.topic(ipc.Topic(2, "/gate/fence", "json", "F", "jsonschema", b"{}"))
-    layout.message(ipc.TopicMessage(2, 1, msgspec.json.encode(FENCE)))
+    layout.message(ipc.TopicMessage(2, 1, msgspec.json.encode(written_fence(FENCE))))
     assert written(layout)["Indicator!fsa"]["path"] == "/vehicle/7/fsa.state"
     camera = written(layout)["3D!main"]["cameraState"]
     assert camera["targetOffset"][0] == 55.0  # between the origin and the far end of the fence
