@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gcs import ipc
 from gcs.graph.traffic import Traffic
-from gcs.live.server import Graph
+from gcs.live.inputs import Graph
 from gcs.topics.topic import Heard, Topic, recorded_topic
 
 

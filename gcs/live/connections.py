@@ -29,9 +29,9 @@ from websockets.typing import Subprotocol
 
 from gcs.live.admission import Admission
 from gcs.live.bucket import Bucket
-from gcs.live.inputs import Gone
+from gcs.live.effects import Frame
+from gcs.live.inputs import Came, Gone, Said
 from gcs.live.protocol import SUBPROTOCOLS
-from gcs.live.server import Came, Frame, Said
 
 FIRST_PORTS = range(8765, 8775)
 """Tried in turn where no port is asked for; 8765 is what viewers offer."""

@@ -1,4 +1,4 @@
-"""Everything that `viewers.py` answers with, as a closed union of frozen values."""
+"""What `server.py` sends to viewers, and all that `viewers.py` answers with, as frozen values."""
 
 from __future__ import annotations
 
@@ -9,6 +9,16 @@ from typing import TypeAlias
 from gcs import ipc
 from gcs.live.inputs import Call
 from gcs.live.services import Answer
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A whole WebSocket message for a viewer; one of a topic may be left out if it is slow."""
+
+    viewer: int
+    data: bytes
+    text: bool
+    of_a_topic: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,3 +73,4 @@ class Values:
 Answering: TypeAlias = Reply | Notice | Values
 """What viewers are told."""
 Effect: TypeAlias = Join | Send | Close | Answering
+"""Of `viewers.py`."""

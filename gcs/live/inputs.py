@@ -1,4 +1,4 @@
-"""What reaches `viewers.py`, as a closed union of frozen values."""
+"""What reaches `server.py` and, through it, `viewers.py`, as frozen values."""
 
 from __future__ import annotations
 
@@ -7,6 +7,30 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from gcs import ipc
+
+
+@dataclass(frozen=True, slots=True)
+class Came:
+    """A viewer has connected."""
+
+    viewer: int
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """A whole WebSocket message of a viewer's."""
+
+    viewer: int
+    data: bytes
+    text: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """Who publishes and who subscribes to what, in names of nodes."""
+
+    published: Mapping[str, list[str]]
+    subscribed: Mapping[str, list[str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,3 +104,4 @@ class Tick:
 Asked: TypeAlias = Called | Published | ParametersAsked | Gone
 """By a viewer."""
 Input: TypeAlias = Asked | Told | Ended | Tick
+"""Of `viewers.py`."""

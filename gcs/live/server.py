@@ -8,7 +8,7 @@ the topic, of some topics more, so that a viewer that comes late is not empty.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TypeAlias, assert_never
 
@@ -17,8 +17,8 @@ import msgspec
 from gcs import ipc
 from gcs.live import protocol
 from gcs.live.clicked_goals import ENCODINGS
-from gcs.live.effects import Answering, Notice, Reply, Values
-from gcs.live.inputs import Asked, Call, Called, Gone, ParametersAsked, Published
+from gcs.live.effects import Answering, Frame, Notice, Reply, Values
+from gcs.live.inputs import Asked, Call, Called, Came, Gone, Graph, ParametersAsked, Published, Said
 from gcs.live.parameters import Parameters
 from gcs.live.services import SERVICES, Answer, schema_of
 
@@ -31,40 +31,6 @@ MAX_NAME_LETTERS = 128
 """Of their encoding and schema name, which are kept."""
 STATUS_ID = "mavgate"
 PARAMETERS = frozenset(Parameters.__struct_fields__)
-
-
-@dataclass(frozen=True, slots=True)
-class Came:
-    """A viewer has connected."""
-
-    viewer: int
-
-
-@dataclass(frozen=True, slots=True)
-class Said:
-    """A whole WebSocket message of a viewer's."""
-
-    viewer: int
-    data: bytes
-    text: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Graph:
-    """Who publishes and who subscribes to what, in names of nodes."""
-
-    published: Mapping[str, list[str]]
-    subscribed: Mapping[str, list[str]]
-
-
-@dataclass(frozen=True, slots=True)
-class Frame:
-    """A whole WebSocket message for a viewer; one of a topic may be left out if it is slow."""
-
-    viewer: int
-    data: bytes
-    text: bool
-    of_a_topic: bool = False
 
 
 ServerInput: TypeAlias = Came | Said | Gone | Graph | ipc.Topic | ipc.TopicMessage | Answering

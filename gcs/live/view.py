@@ -23,9 +23,9 @@ from gcs.exit_codes import ExitCode
 from gcs.live.admission import Admission
 from gcs.live.connection_graph import ConnectionGraph
 from gcs.live.connections import Connections, Event, PortTakenError, Refused
-from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send, Values
+from gcs.live.effects import Close, Effect, Frame, Join, Notice, Reply, Send, Values
 from gcs.live.inputs import Ended, Input, Tick, Told
-from gcs.live.server import Frame, Server, ServerInput
+from gcs.live.server import Server, ServerInput
 from gcs.live.session_layout import SessionLayout
 from gcs.live.viewers import LOOKING, Viewers
 from gcs.operator.client import StationEnded, StationEvent

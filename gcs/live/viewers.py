@@ -178,10 +178,14 @@ class Viewers:
         return [self._send(viewer, ask, None, now_ns)]
 
     def _asked(self, asked: ParametersAsked) -> list[Effect]:
-        """Who only looks is told the values as they are, which says that it has set nothing."""
+        """Whoever asks is told the values as they are, also where it has set nothing."""
         told: list[Effect] = []
-        if asked.set_to is not None and asked.viewer in self._connections:
-            before, self._parameters = self._parameters, self._parameters.changed(asked.set_to)
+        if asked.set_to is not None and asked.viewer not in self._connections:
+            told.append(Notice(asked.viewer, NEEDS_CONTROL, warning=True))
+        elif asked.set_to is not None:
+            before = self._parameters
+            self._parameters, mistakes = before.changed(asked.set_to)
+            told += [Notice(asked.viewer, text, warning=True) for text in mistakes[:1]]
             if self._parameters != before:
                 told.append(Values(None, msgspec.structs.asdict(self._parameters)))
         values = msgspec.structs.asdict(self._parameters)

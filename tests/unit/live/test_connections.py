@@ -27,8 +27,8 @@ from gcs.live.connections import (
     PortTakenError,
     Refused,
 )
-from gcs.live.inputs import Gone
-from gcs.live.server import Came, Frame, Said
+from gcs.live.effects import Frame
+from gcs.live.inputs import Came, Gone, Said
 from tests.system.hostile_viewers import HANDSHAKE
 
 pytestmark = pytest.mark.slow  # sockets

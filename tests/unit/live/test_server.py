@@ -15,15 +15,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcs import ipc
-from gcs.live.effects import Notice, Reply, Values
-from gcs.live.inputs import Asked, Call, Called, Gone, ParametersAsked, Published
+from gcs.live.effects import Frame, Notice, Reply, Values
+from gcs.live.inputs import (
+    Asked,
+    Call,
+    Called,
+    Came,
+    Gone,
+    Graph,
+    ParametersAsked,
+    Published,
+    Said,
+)
 from gcs.live.server import (
     KEPT,
     MAX_VIEWER_TOPICS,
-    Came,
-    Frame,
-    Graph,
-    Said,
     Server,
     ServerEffect,
 )

@@ -85,7 +85,7 @@ def test_a_viewer_that_looks_may_ask_for_what_the_station_hears_of_anyone() -> N
 
 
 def test_the_height_is_the_parameter_s_where_it_is_set() -> None:
-    high = DEFAULT.changed({"goal_height_m": 7.5})
+    high, _ = DEFAULT.changed({"goal_height_m": 7.5})
     assert asked("goto", '{"east_m": 0, "north_m": 0}', high).goal_enu == (0.0, 0.0, 7.5)
     assert asked("goto", '{"east_m": 0, "north_m": 0, "up_m": 1}', high).goal_enu == (0.0, 0.0, 1.0)
 
@@ -95,7 +95,7 @@ def test_without_a_known_height_the_goal_has_none_which_the_gate_refuses() -> No
 
 
 def test_a_step_goes_on_from_the_goal_that_is_flown_to() -> None:
-    far = DEFAULT.changed({"step_m": 2.5})
+    far, _ = DEFAULT.changed({"step_m": 2.5})
     assert asked("step", '{"direction": "north"}', far, MOVING).goal_enu == (5.0, 7.5, 5.0)
     with pytest.raises(BadCallError, match="position"):
         asked("step", '{"direction": "north"}', far, None)
@@ -139,7 +139,9 @@ def test_what_cannot_be_meant_is_told_in_a_sentence(service: str, payload: bytes
     ],
 )
 def test_a_parameter_that_makes_no_sense_changes_nothing(asked_for: dict[str, object]) -> None:
-    assert DEFAULT.changed(asked_for) == DEFAULT
+    same, mistakes = DEFAULT.changed(asked_for)
+    assert same == DEFAULT
+    assert len(mistakes) == 1
 
 
 def test_a_form_is_made_of_plain_types() -> None:

@@ -232,11 +232,13 @@ def test_a_refusal_comes_with_its_numbers() -> None:
 
 def test_parameters_are_set_by_the_trusted_alone_and_told_to_all_who_want_to_know() -> None:
     script = Script()
-    assert script.set(7, step_m=2.5) == [Values(7, {"step_m": 1.0}, "set")]
+    looks = Notice(7, NEEDS_CONTROL, warning=True)
+    assert script.set(7, step_m=2.5) == [Values(7, {"step_m": 1.0}, "set"), looks]
     script.trusted(7)
     changed = {"goal_height_m": 0.0, "step_m": 2.5}
     assert script.set(7, step_m=2.5) == [Values(7, {"step_m": 2.5}, "set"), Values(None, changed)]
-    assert script.set(7, step_m=-4.0, other=1.0) == [Values(7, {"step_m": 2.5}, "set")]
+    why = Notice(7, "step_m is a number from 0.01 to 100; it stays 2.5", warning=True)
+    assert script.set(7, step_m=-4.0) == [Values(7, {"step_m": 2.5}, "set"), why]
     assert script.feed(ParametersAsked(8, (), None)) == [Values(8, changed)]
 
 
