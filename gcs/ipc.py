@@ -35,6 +35,9 @@ SCHEMA = 1
 Maybe3 = tuple[float | None, float | None, float | None]
 """JSON has no NaN: what was typed as nan or inf travels as null and is refused by the gate."""
 
+EVERY = -1
+"""In place of a vehicle's number, of abort, hold, land and rtl: every one that flies."""
+
 
 Lease = Annotated[float, msgspec.Meta(gt=0.0, le=86_400.0)]
 """Seconds, more than 0 and at most a day."""
@@ -64,8 +67,9 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     stream_begin stream_end station_take station_release station_end.
     A goto has one of `goal_enu`, `move_enu`, `move_body` and `goal_global`.  Where it leads is
     settled when it arrives, by what the vehicle has reported then: the verdict's `goal_enu` tells.
-    Behind a bridge there may be several vehicles: abort, hold, land and rtl without a `vehicle` are
-    for every one that flies, and the first of them answers.
+    Of several vehicles: abort, hold, land and rtl without a `vehicle`, or with -1, are for every
+    one that flies, and the first of them answers.  Anything else without one is for the first that
+    was heard behind a bridge, and refused by any other station (SEVERAL_VEHICLES).
     """
 
     id: int
@@ -89,7 +93,7 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     value: float | None = None  # param_set
     offset: int = 0  # file_read, log_read: the first byte that is wanted
     operation: int = 0  # abort: only if this operation is still under way; 0 = whatever is
-    vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
+    vehicle: int = 0  # system id of the one that it is for
     orbit: Circle | None = None  # orbit
     lease_s: Lease | None = None  # aborted unless a `renew` comes within so long; null: no lease
 
@@ -117,10 +121,18 @@ class Stream(msgspec.Struct, frozen=True, tag="stream", tag_field="type", omit_d
 
 
 class Pending(msgspec.Struct, frozen=True, tag="pending", tag_field="type"):
-    """Keyboard manager: the pending goal changed; recorded and logged, nothing is sent."""
+    """Keyboard manager: the pending goal of the vehicle that is shown changed; recorded and logged,
+    nothing is sent."""
 
     goal_enu: Vec3
     yaw_deg: float | None = None
+
+
+class Show(msgspec.Struct, frozen=True, tag="show", tag_field="type"):
+    """From now on tell me of this vehicle, in place of the first one: snapshots and states, fence
+    and mission path, messages that are subscribed to.  What was before of it is told at once."""
+
+    vehicle: int  # system id; of one that is not heard there are snapshots without a vehicle
 
 
 class Leave(msgspec.Struct, frozen=True, tag="leave", tag_field="type"):
@@ -203,6 +215,7 @@ Command: TypeAlias = (
     Ask
     | Stream
     | Pending
+    | Show
     | Leave
     | Join
     | Subscribe
@@ -491,6 +504,21 @@ class StateEvent(msgspec.Struct, frozen=True, tag="state", tag_field="type"):
     severity: str
 
 
+class OtherVehicle(msgspec.Struct, frozen=True):
+    """A vehicle of the station beside the one that a snapshot is of."""
+
+    vehicle: int  # system id
+    state: str
+    severity: str
+    conditions: list[str] = []
+    mode: str = ""
+    armed: bool | None = None
+    on_ground: bool = False  # it was last seen there
+    pos_enu: Vec3 | None = None  # metres east, north, up in the frame of the snapshot's vehicle
+    goal_enu: Vec3 | None = None  # the same; the goal that it flies to, or hovers at
+    battery_pct: float | None = None
+
+
 class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     """At most ten a second, dropped when the reader is slow.  None = not known (yet)."""
 
@@ -527,6 +555,12 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot", tag_field="type"):
     mission_seq: int | None = None
     mission_total: int | None = None
     in_control: OperatorInfo | None = None  # of the station; None = nobody
+    others: list[OtherVehicle] = []  # that the station flies as well, in the order they were met
+
+    @property
+    def sysid(self) -> int:
+        """The system id of the vehicle that it is of; 0 = none."""
+        return int(self.vehicle.partition("/")[0] or 0)
 
 
 class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
@@ -559,7 +593,7 @@ class MissionItem(msgspec.Struct, frozen=True, array_like=True):
 
 class MissionPath(msgspec.Struct, frozen=True, tag="mission_path", tag_field="type"):
     """The mission on board as it was verified: its path and its items; empty where there is none.
-    Told when it changes, of the vehicle that snapshots show."""
+    Told when it changes, of the vehicle that snapshots are of."""
 
     points_enu: list[Vec3]  # metres; the legs join them in order
     items: list[MissionItem] = []
@@ -568,7 +602,7 @@ class MissionPath(msgspec.Struct, frozen=True, tag="mission_path", tag_field="ty
 
 class VehicleFence(msgspec.Struct, frozen=True, tag="vehicle_fence", tag_field="type"):
     """The fence that was uploaded to the vehicle, which it keeps by itself, whoever has put it on
-    board; the policy's is `Fences`.  Told when it changes, of the vehicle that snapshots show."""
+    board; the policy's is `Fences`.  Told when it changes, of the vehicle that snapshots are of."""
 
     zones: list[FenceShape]
 
@@ -579,6 +613,7 @@ class OperatorGoal(msgspec.Struct, frozen=True, tag="operator_goal", tag_field="
     client: int
     goal_enu: Vec3
     yaw_deg: float | None = None
+    vehicle: int = 0  # system id of the one that it is for; 0 = the first that was heard
 
 
 class BridgeLink(msgspec.Struct, frozen=True):
@@ -609,7 +644,7 @@ class BridgeClient(msgspec.Struct, frozen=True):
 
 
 class BridgeVehicle(msgspec.Struct, frozen=True):
-    """One vehicle behind a bridge; the screens of operators show the first one in full."""
+    """One vehicle of several, or behind a bridge, in short; `Snapshot` has one in full."""
 
     vehicle: int  # system id
     name: str  # "1/1 px4 quadrotor"
@@ -629,7 +664,7 @@ class BridgeVehicle(msgspec.Struct, frozen=True):
 
 class BridgeStatus(msgspec.Struct, frozen=True, tag="bridge", tag_field="type"):
     """Who is connected to the bridge, and what goes through it; at most two a second, dropped when
-    the reader is slow."""
+    the reader is slow.  A station without a bridge tells it where it flies several vehicles."""
 
     time_ns: int
     links: list[BridgeLink]

@@ -12,11 +12,12 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import partial
 from typing import Final, TypeAlias
 
 from gcs.frames import finite_or_nan, heading_rad, ned_from_enu
 from gcs.gate import requests as gate
-from gcs.ipc import Ask, Circle, Maybe3
+from gcs.ipc import EVERY, Ask, Circle, Maybe3
 
 
 class ArgumentKind(Enum):
@@ -84,6 +85,13 @@ class FlyVelocity:
 
 
 @dataclass(frozen=True, slots=True)
+class ChooseVehicle:
+    """From now on the vehicle with this system id is meant."""
+
+    sysid: int
+
+
+@dataclass(frozen=True, slots=True)
 class Wait:
     """Do nothing for so many seconds of flight."""
 
@@ -110,7 +118,9 @@ class Quit:
     """Leave in good order."""
 
 
-Action: TypeAlias = SendRequests | FlyVelocity | Wait | ShowState | ShowPreflight | ShowHelp | Quit
+Action: TypeAlias = (
+    SendRequests | FlyVelocity | ChooseVehicle | Wait | ShowState | ShowPreflight | ShowHelp | Quit
+)
 
 
 class BadAskError(ValueError):
@@ -195,6 +205,16 @@ def _velocity(east: float, north: float, up: float, seconds: float = 1.0) -> Act
     return FlyVelocity((east, north, up), seconds)
 
 
+def _stop(word: str, every: bool) -> Action:
+    return SendRequests((Ask(0, word, vehicle=EVERY if every else 0),))
+
+
+def _vehicle(sysid: int) -> Action:
+    if not 1 <= sysid <= 255:
+        raise BadAskError(f"a system id is from 1 to 255, got {sysid}")
+    return ChooseVehicle(sysid)
+
+
 def _mission_fly(path: str) -> Action:
     return SendRequests((Ask(0, "mission_upload", path=path), Ask(0, "mission_start")))
 
@@ -225,6 +245,7 @@ _YAW = Argument("YAW_DEG", ArgumentKind.DEGREES, optional=True)
 _AMSL = Argument("--amsl", ArgumentKind.FLAG, optional=True)
 _SECONDS = Argument("SECONDS", ArgumentKind.SECONDS)
 _FOR_SECONDS = Argument("SECONDS", ArgumentKind.SECONDS, optional=True)
+_ALL = (Argument("all", ArgumentKind.FLAG, optional=True),)
 _FILE = (Argument("FILE", ArgumentKind.FILE, "path"),)
 _TYPED = ActsAtOnce.TYPED
 
@@ -339,10 +360,21 @@ TABLE: Final[tuple[Word, ...]] = (
         moves=True,
         doer=Doer.CONSOLE,
     ),
-    Word("land", "land where it is", at_once=_TYPED, moves=True, gate=gate.Land(), stops=True),
+    Word(
+        "land",
+        "land where it is; all: every vehicle that flies",
+        _ALL,
+        build=partial(_stop, "land"),
+        at_once=_TYPED,
+        moves=True,
+        gate=gate.Land(),
+        stops=True,
+    ),
     Word(
         "rtl",
-        "return to home and land",
+        "return to home and land; all: every vehicle that flies",
+        _ALL,
+        build=partial(_stop, "rtl"),
         at_once=_TYPED,
         moves=True,
         gate=gate.ReturnHome(),
@@ -350,14 +382,19 @@ TABLE: Final[tuple[Word, ...]] = (
     ),
     Word(
         "hold",
-        "stop and hold, in the vehicle's own hold mode",
+        "stop and hold, in the vehicle's own hold mode; all: every vehicle that flies",
+        _ALL,
+        build=partial(_stop, "hold"),
         at_once=_TYPED,
         gate=gate.Hold(),
         stops=True,
     ),
     Word(
         "abort",
-        "stop now and forget the goal; never refused, waits for nothing",
+        "stop now and forget the goal; never refused, waits for nothing; all: every vehicle that "
+        "flies",
+        _ALL,
+        build=partial(_stop, "abort"),
         at_once=ActsAtOnce.ALWAYS,
         gate=gate.Abort(),
         stops=True,
@@ -470,6 +507,14 @@ TABLE: Final[tuple[Word, ...]] = (
         doer=Doer.STATION,
     ),
     Word(
+        "vehicle",
+        "of several: what follows is for the one with this MAVLink system id",
+        (Argument("SYSID", ArgumentKind.COUNT),),
+        "2",
+        _vehicle,
+        doer=Doer.CONSOLE,
+    ),
+    Word(
         "wait",
         "do nothing for so many seconds of flight",
         (_SECONDS,),
@@ -541,7 +586,7 @@ def label(request: Ask) -> str:
         name = next((typed_as[each] for each in goals_of(request) if each in typed_as), name)
     for first in ("mission", "fence", "rally", "param", "file", "log", "station", "stream"):
         name = name.replace(f"{first}_", f"{first} ")
-    parts: list[str] = [name]
+    parts: list[str] = [name, *(["all"] if request.vehicle == EVERY else [])]
     if request.word == "takeoff":
         parts.append(_shown(request.up_m))
     if request.word == "speed":

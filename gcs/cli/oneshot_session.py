@@ -23,7 +23,7 @@ from gcs.gate.states import State
 from gcs.ipc import Ask
 from gcs.operator import event_text
 from gcs.operator.chosen_vehicle import ChosenVehicle
-from gcs.operator.client import Polling, StationClient, Way
+from gcs.operator.client import Polling, StationClient
 from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
@@ -94,13 +94,12 @@ def run(setup: StationConfig, how: OneShotConfig, task: Task) -> int:
 def run_through(found: Description, how: OneShotConfig, task: Task) -> int:
     """Do it through a running station, which goes on."""
     with Interrupts() as interrupts:
-        joined: Way = joined_station(found, f"gcs {how.what}", hold_on_leave=False)
+        joined: Polling = joined_station(found, f"gcs {how.what}", hold_on_leave=False)
         if not how.quiet:
             click.echo(f"gcs: through the running station of process {found.pid}", err=True)
         how = replace(how, at_once=how.stops)
         if found.vehicles and how.wanted.vehicle is not None:
-            # Of one of several less is told: not where its home is, nor whether it has landed.
-            joined, how = ChosenVehicle(joined, how.wanted.vehicle), replace(how, placed=False)
+            joined = ChosenVehicle(joined, how.wanted.vehicle)
         return run_over(joined, interrupts, how, task)
 
 

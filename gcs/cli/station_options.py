@@ -16,6 +16,8 @@ from gcs.operator.number_text import read_number
 if TYPE_CHECKING:
     from gcs.config import StationConfig
 
+MOST_VEHICLES = 16
+"""As the station meets (`gcs/station/vehicles.py`)."""
 OF_THE_SIM = ("autopilot", "home", "seed", "speedup")
 
 
@@ -35,7 +37,14 @@ def _place(_ctx: click.Context, _param: click.Parameter, text: str) -> str:
     return text
 
 
-SIM = click.Option(["--sim"], is_flag=True, help="Start a vehicle of our own, on a private port.")
+SIM = click.Option(
+    ["--sim"],
+    type=click.IntRange(1, MOST_VEHICLES),
+    is_flag=False,
+    flag_value=1,
+    metavar="[N]",
+    help="Start a vehicle of our own, on a private port, or N of them beside each other.",
+)
 AUTOPILOT = click.Option(
     ["--autopilot"],
     type=click.Choice(["px4", "ardupilot"]),
@@ -94,7 +103,7 @@ class OfStation(TypedDict):
     sign_key: str
     policy: str
     log_dir: str
-    sim: bool
+    sim: int | None
     autopilot: str
     home: str
     seed: int
@@ -149,7 +158,11 @@ def new_station(
     )
     if of["sim"]:
         simulated = SimConfig(
-            autopilot=of["autopilot"], home=of["home"], seed=of["seed"], speedup=of["speedup"]
+            autopilot=of["autopilot"],
+            home=of["home"],
+            seed=of["seed"],
+            speedup=of["speedup"],
+            count=of["sim"],
         )
         config = msgspec.structs.replace(config, sim=simulated, endpoints=[])
     config = msgspec.structs.replace(

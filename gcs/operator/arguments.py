@@ -111,6 +111,14 @@ def place(method: str, **given: object) -> Vec3 | None:
     return (each[0], each[1], each[2])
 
 
+def sysid(method: str, **given: object) -> int:
+    """Of a vehicle."""
+    ((_, value),) = given.items()
+    if not isinstance(value, int) or not 1 <= value <= 255:
+        raise _bad(method, given, "a system id, 1 to 255")
+    return value
+
+
 def text(method: str, **given: object) -> str:
     """A word or a name."""
     ((_, value),) = given.items()

@@ -10,8 +10,7 @@ import msgspec
 from gcs.config import SimConfig, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.operator import arguments, joined
-from gcs.operator.chosen_vehicle import ChosenVehicle
-from gcs.operator.client import StationClient, Way
+from gcs.operator.client import StationClient
 from gcs.operator.differences import differences, hint, sentence
 from gcs.operator.failures import CannotConnect, Disconnected, StationDiffers
 from gcs.operator.station import Station
@@ -50,9 +49,8 @@ def connect(
     as fast as real time (None: 1).
 
     `vehicle`: the MAVLink system id of the one to fly, where several are heard (None: the only one;
-    of a running bridge the first).  What is asked is asked of that one alone, stops as well.  Of
-    one of a bridge that is not the first, `snapshot` is made anew once a second and without what
-    is not told of it, such as home; `telemetry` is not told at all.
+    of a running bridge the first; `choose` may name one later).  What is asked is asked of that one
+    alone, stops as well.
 
     A running station that has another `policy`, `log_dir`, `speedup` or `keep` than asked for, or
     not that vehicle, is not joined: StationDiffers says which, and the vehicles that are there.
@@ -104,6 +102,7 @@ def connect(
     setup = StationConfig(
         endpoints=[] if sim else links or [DEFAULT_LINK],
         sim=simulated,
+        fleet=vehicle is None,
         target_sysid=vehicle or 0,
         policy_path=_policy_file(policy or "default"),
         vehicle_key_path=sign_key or "",
@@ -173,16 +172,13 @@ def _join(
     found: Description, name: str, vehicle: int | None, take_control: bool, timeout_s: float
 ) -> Station:
     """It knows the vehicle, if there is one: nothing is waited for but its greeting, and what is
-    told of a chosen vehicle once a second."""
+    told of a chosen vehicle."""
     try:
-        way: Way = joined.JoinedStation.join(found, f"Python {name}")
+        way = joined.JoinedStation.join(found, f"Python {name}")
     except OSError as error:
         raise CannotConnect(f"the station of process {found.pid} takes no connection") from error
-    chosen = vehicle is not None and bool(found.vehicles)
-    if vehicle is not None and chosen:
-        way = ChosenVehicle(way, vehicle)
-    first = not chosen or found.vehicle.startswith(f"{vehicle}/")
-    station = Station(way, tells_messages=first)
+    chosen = vehicle if vehicle is not None and found.vehicles else 0
+    station = Station(way, chosen)
     talk = station.talk
     try:
         station.wait_until(

@@ -23,8 +23,8 @@ import msgspec
 
 from gcs import ipc
 from gcs.frames import Vec3
-from gcs.gate.refusal import Code
 from gcs.operator import arguments, preflight
+from gcs.operator.chosen_vehicle import ListenedVehicle
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.conversation import Conversation
 from gcs.operator.failures import Disconnected, NotCompleted, NotHeard, Refused
@@ -36,6 +36,7 @@ from gcs.operator.stream import Stream
 
 TELEMETRY_WAIT_S = 5.0
 ANSWER_WAIT_S = 10.0
+SETTLE_WAIT_S = 3.0
 LOOK_S = 0.5
 """Between two looks at what may still come."""
 KEPT_EVENTS = 10_000
@@ -50,10 +51,9 @@ class Station(Flights, Missions, Parameters):
     was joined goes on; if this program was in control of it, the vehicle is held.
     """
 
-    def __init__(self, connection: Listened, *, tells_messages: bool = True) -> None:
-        """`tells_messages`: those that it tells are of the vehicle that is flown."""
-        self._connection = connection
-        self._tells_messages = tells_messages
+    def __init__(self, connection: Listened, vehicle: int = 0) -> None:
+        """`vehicle`: the system id of the one of several that is flown; 0: none is chosen."""
+        self._connection = ListenedVehicle(connection, vehicle)
         self._changed = threading.Condition()
         self.talk = Conversation()
         """What the station has told so far."""
@@ -62,7 +62,7 @@ class Station(Flights, Missions, Parameters):
         self._unknown_messages = ""
         self._readers: list[deque[ipc.Event]] = []
         self._left = False
-        connection.listen(self._heard)
+        self._connection.listen(self._heard)
 
     def __enter__(self) -> Station:
         return self
@@ -82,6 +82,27 @@ class Station(Flights, Missions, Parameters):
         self._left = True
         self._connection.send(ipc.Leave("the program ends"))
         self._connection.close()
+
+    def choose(self, vehicle: int, timeout_s: float = ANSWER_WAIT_S) -> None:
+        """Of several vehicles: from now on fly and look at the one with this MAVLink system id.
+
+        Also where it is not heard, so that nothing that follows is for another one: then it raises
+        NotHeard.  What was asked of the vehicle before goes on.  Raises BadArgument, Disconnected.
+        """
+        sysid = arguments.sysid("choose", vehicle=vehicle)
+        wait_s = arguments.positive("choose", timeout_s=timeout_s)
+        with self._changed:
+            self.talk.snapshot = None
+            self._messages.clear()
+            self._connection.choose(sysid)
+        self.wait_until(lambda: self._shown == sysid, wait_s)
+        if self._shown != sysid:
+            raise NotHeard(f"vehicle {sysid} was not heard within {wait_s:g} s", wait_s)
+        self.wait_until(lambda: self.talk.can_be_judged, SETTLE_WAIT_S)
+
+    @property
+    def _shown(self) -> int:
+        return 0 if self.talk.snapshot is None else self.talk.snapshot.sysid
 
     # --------------------------------------------------------------------------- streams
 
@@ -166,14 +187,10 @@ class Station(Flights, Missions, Parameters):
         """The latest fields of a MAVLink message of the vehicle, such as "BATTERY_STATUS".
 
         The first call for a message subscribes to it and waits until it is heard.  Raises
-        BadArgument for a name that no message has; Refused for a vehicle of a bridge that is not
-        its first, of which no messages are told; NotHeard if it is not heard in time.
+        BadArgument for a name that no message has; NotHeard if it is not heard in time.
         """
         arguments.text("telemetry", message=message)
         wait_s = arguments.seconds("telemetry", timeout_s=timeout_s)
-        if not self._tells_messages:
-            sentence = "of several vehicles only the first one's messages are told"
-            raise Refused(Code.UNSUPPORTED, sentence, {})
         with self._changed:
             if message not in self._messages:
                 self._unknown_messages = ""

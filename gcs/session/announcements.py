@@ -33,7 +33,7 @@ from gcs.report import (
 )
 from gcs.session.effects import Effect, Emit, Record
 from gcs.session.requests import Asked
-from gcs.session.work import GiveVerdict, Log
+from gcs.session.work import GiveVerdict, Log, ToScreens, Work
 
 NODE = "state_and_safety"
 
@@ -201,7 +201,7 @@ def transition(
     goal_ned: Vec3 | None,
     wrong: tuple[ConditionItem, ...],
     sysid: int,
-) -> list[Effect]:
+) -> list[Work]:
     """The gate's state machine went to another state."""
     item = FsaItem(
         sysid,
@@ -215,7 +215,7 @@ def transition(
         conditions=wrong,
     )
     event = ipc.StateEvent(item.before, item.state, item.event, item.control, item.severity)
-    return [Emit(event), Record(item)]
+    return [ToScreens(event), Record(item)]
 
 
 def reminder(gate: Gate, sysid: int) -> list[Effect]:
@@ -239,12 +239,12 @@ def origin(sysid: int, at: Origin | None) -> list[Effect]:
     return [] if at is None else [Record(OriginItem(sysid, at.lat_deg, at.lon_deg, at.alt_amsl_m))]
 
 
-def fence(zones: Iterable[Zone], origin: Origin | None, policy: Policy) -> list[Effect]:
+def fence(zones: Iterable[Zone], origin: Origin | None, policy: Policy) -> list[Work]:
     """The fence as the verifier stands on it, zones in the local tangent plane."""
     where = None if origin is None else (origin.lat_deg, origin.lon_deg, origin.alt_amsl_m)
     shown = [_shape(zone) for zone in zones]
     item = FenceItem(shown, where, policy.margin_h_m, policy.margin_v_m)
-    return [Record(item), Emit(ipc.Fences(item.zones))]
+    return [Record(item), ToScreens(ipc.Fences(item.zones))]
 
 
 def shapes(zones: Iterable[Zone]) -> list[FenceShape]:

@@ -80,6 +80,12 @@ class Log(msgspec.Struct, frozen=True, gc=False):
     recorded: bool = True
 
 
+class ToScreens(msgspec.Struct, frozen=True, gc=False):
+    """Tell the operators who are shown this vehicle."""
+
+    event: ipc.Event
+
+
 class TellOperator(msgspec.Struct, frozen=True, gc=False):
     """An event for the operator who made the request `request_id`, which is not over yet."""
 
@@ -176,6 +182,7 @@ Work: TypeAlias = (
     | AskGate
     | GiveVerdict
     | Log
+    | ToScreens
     | TellOperator
     | AskMission
     | AskReader

@@ -242,19 +242,25 @@ class BridgePort:
             hears = hears_alone(telemetry.autopilot.name, each.parameters)
             if hears is not None:
                 done += self.bridge.hears_alone(address, hears)
-        links = self._link_rows(now_ns, counts)
         clients = [
             msgspec.structs.replace(
                 client, signed=signatures.told(client.link, verified=client.verified)
             )
             for client in self.bridge.status(now_ns)
         ]
+        return [*done, self.status(now_ns, counts, clients)]
+
+    def status(
+        self, now_ns: int, counts: Sequence[Counts], clients: Sequence[ipc.BridgeClient] = ()
+    ) -> Emit:
+        """The vehicles, links and clients in short; of several vehicles without a bridge, too."""
+        links = self._link_rows(now_ns, counts)
         rows = [
             bridge_row(each.gate, each.telemetry, each.presence.losses, now_ns)
             for each in self._vehicles
             if each.telemetry is not None
         ]
-        return [*done, Emit(ipc.BridgeStatus(now_ns, links, clients, rows))]
+        return Emit(ipc.BridgeStatus(now_ns, links, [*clients], rows))
 
     def _link_rows(self, now_ns: int, counts: Sequence[Counts]) -> list[ipc.BridgeLink]:
         """The links that vehicles are on, with their rates since the last time."""

@@ -19,7 +19,7 @@ from gcs.station.links import Links
 from gcs.station.operators import Operators
 from gcs.station.queue import WorkQueue
 from gcs.station.signatures import Signatures
-from gcs.station.vehicles import Vehicles
+from gcs.station.vehicles import FIRST, Vehicles
 from gcs.vehicle.interpreted_messages import INTERPRETED, PLACES
 from gcs.vehicle.received_frames import ALIVE
 from gcs.vehicle.record_items import pieces
@@ -293,7 +293,8 @@ class Incoming:
             work += self._bridge.parameter(frame, now_ns)
         elif frame.msgid == MsgId.HEARTBEAT:
             work += self._bridge.beat(frame, now_ns)
-        subscriptions = self._operators.subscriptions
-        if frame.msgid in subscriptions.subscribed and frame.sysid == self._vehicles.first.sysid:
-            work += subscriptions.heard(frame, now_ns)
+        if frame.msgid in self._operators.subscriptions.subscribed:
+            slot = self._vehicles.slot_of(frame.sysid)
+            if slot is not None:
+                work += self._operators.heard_message(frame, now_ns, first=slot == FIRST)
         return work

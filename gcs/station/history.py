@@ -7,6 +7,8 @@ import math
 from collections import deque
 from typing import Final
 
+import msgspec
+
 from gcs import ipc
 from gcs.gate.effects import Level
 from gcs.gate.states import LandedState
@@ -22,7 +24,7 @@ _NOT_IN_AIR: Final = ("", LandedState.UNDEFINED.name, LandedState.ON_GROUND.name
 
 
 class History:
-    """Of the vehicle that operators' screens show."""
+    """Of one vehicle; the lines of the log are told with that of the first."""
 
     def __init__(self) -> None:
         self._trail: deque[ipc.TrailPoint] = deque(maxlen=POINTS)
@@ -54,5 +56,9 @@ class History:
 
     def told(self) -> list[ipc.Event]:
         """For one that has just joined."""
-        trail = ipc.History([*self._trail], [*self._lines], self._air_since_ns)
+        trail = msgspec.structs.replace(self.way(), log=[*self._lines])
         return [trail, *self.on_board.told()]
+
+    def way(self) -> ipc.History:
+        """The trail alone, for one that is shown this vehicle from now on."""
+        return ipc.History([*self._trail], [], self._air_since_ns)

@@ -1,4 +1,4 @@
-"""What the vehicle that screens show has on board: its mission, and the fence that was uploaded."""
+"""What a vehicle has on board: its mission, and the fence that was uploaded."""
 
 from __future__ import annotations
 
@@ -40,19 +40,24 @@ class OnBoard:
         if vehicle.telemetry is None:
             return []
         missions, fence = vehicle.missions, vehicle.fence
-        before = (self._mission, self._fence)
+        before = self.all
         facts = (missions.plan, missions.path_ned, missions.told and missions.unverified)
         if facts != self._mission_from:
             self._mission_from, self._mission = facts, mission_on_board(missions)
         about = (fence.items, vehicle.telemetry.origin, vehicle.telemetry.home_ned)
         if fence.items is not None and about != self._fence_from:
             self._fence_from, self._fence = about, fence_on_board(fence, vehicle.telemetry)
-        return [each for each in (self._mission, self._fence) if each not in before]
+        return [each for each in self.all if each not in before]
+
+    @property
+    def all(self) -> tuple[ipc.MissionPath, ipc.VehicleFence]:
+        """Also where there is none."""
+        return (self._mission, self._fence)
 
     def told(self) -> list[ipc.Event]:
         """For one that has just joined."""
         nothing = (ipc.MissionPath([]), ipc.VehicleFence([]))
-        return [each for each in (self._mission, self._fence) if each not in nothing]
+        return [each for each in self.all if each not in nothing]
 
 
 def mission_on_board(missions: Missions) -> ipc.MissionPath:

@@ -8,6 +8,7 @@ the vehicle is the gate's (`gcs.gate.states.Control`).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from gcs import ipc
@@ -65,6 +66,9 @@ class OperatorControl:
 
     def __contains__(self, operator: int) -> bool:
         return operator in self._there
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._there)
 
     # ----------------------------------------------------------------------- come and go
 

@@ -70,7 +70,7 @@ def _asked(
     if bridge is not None and telemetry is not None:
         vehicle = Address(telemetry.sysid, telemetry.compid)
         held = bridge.held_back(command, telemetry.autopilot, vehicle)
-    refusal = _why_not(vehicles, bridge, command, owner, now_ns)
+    refusal = _why_not(vehicles, bridge, command, owner, now_ns, asked=True)
     if isinstance(command, ipc.Ask) and refusal is None:
         command, refusal = _settled(command, vehicles.of_owner(owner))
     if isinstance(command, ipc.Stream) and owner != STATION:
@@ -88,12 +88,24 @@ def _why_not(
     command: ipc.Ask | ipc.Stream,
     owner: int,
     now_ns: int,
+    *,
+    asked: bool,
 ) -> Refusal | None:
     """Why nothing, or not this, can be asked of that vehicle, whatever its gate would say."""
     refusal, vehicle = vehicles.refusal(owner, now_ns), vehicles.of_owner(owner)
+    if refusal is None and not command.vehicle and not _needs_no_name(command):
+        refusal = vehicles.why_unnamed(asked=asked)
     if refusal is None and bridge is not None and vehicle.telemetry is not None:
         refusal = bridge.armings.why_not(command, vehicle.sysid)
     return refusal
+
+
+def _needs_no_name(command: ipc.Ask | ipc.Stream) -> bool:
+    """A stop is for every one that flies; an operation is of one vehicle."""
+    if isinstance(command, ipc.Stream):
+        return False
+    station = doer_of(command.word) is Doer.STATION
+    return station or command.word in STOPS or bool(command.operation)
 
 
 def _settled(ask: ipc.Ask, vehicle: Vehicle) -> tuple[ipc.Ask, Refusal | None]:
@@ -115,7 +127,7 @@ def _checked(
     owner = vehicles.owner_for(operators.vehicle_of(ask))
     vehicle = vehicles.of_owner(owner)
     refusal = operators.control.refusal(operator, ask)
-    refusal = refusal or _why_not(vehicles, bridge, ask, owner, now_ns)
+    refusal = refusal or _why_not(vehicles, bridge, ask, owner, now_ns, asked=False)
     if refusal is None:
         ask, refusal = _settled(ask, vehicle)
     if refusal is not None:
@@ -147,6 +159,8 @@ def _for_each(
     """
     sysid = operators.vehicle_of(command)
     stops = isinstance(command, ipc.Ask) and command.word in STOPS and not command.operation
+    if stops and sysid == ipc.EVERY:
+        sysid, command = 0, msgspec.structs.replace(command, vehicle=0)
     flying = _in_the_air(vehicles) if stops and not sysid else []
     if not flying:
         yield vehicles.owner_for(sysid), command

@@ -20,7 +20,7 @@ from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import GENERIC, Autopilot
 from gcs.request_words import BadAskError, Doer, doer_of
 from gcs.session import announcements
-from gcs.session.effects import Emit, ShowTopics
+from gcs.session.effects import Effect, Emit, ShowTopics
 from gcs.session.requests import FIRST, Requests, operator_of, request_of
 from gcs.session.setup import Setup
 from gcs.session.speedup_waits import Times
@@ -41,9 +41,11 @@ from gcs.session.work import (
 from gcs.station.leases import Leases
 from gcs.station.operations import Operations
 from gcs.station.operator_control import NOBODY, OperatorControl
+from gcs.station.screens import Screens
 from gcs.station.streams import BEGIN, Streams
 from gcs.station.subscriptions import Subscriptions
 from gcs.vehicle.talk.telemetry import Telemetry
+from gcs.wire.frame import Frame
 from gcs.wire.messages import CommandLong
 from gcs.wire.text import clean
 
@@ -64,6 +66,7 @@ class Operators:
         self._leases = Leases(times)
         self.subscriptions = Subscriptions(times)
         self._streams = Streams()
+        self.screens = Screens(self.control)
 
     @property
     def in_control(self) -> ipc.OperatorInfo | None:
@@ -160,7 +163,7 @@ class Operators:
                 if operator != self.control.in_control:
                     return []  # who only looks cannot send it
                 text = f"Keyboard: {plain_enu(goal_enu)}"
-                goal = ipc.OperatorGoal(operator, goal_enu, yaw_deg)
+                goal = ipc.OperatorGoal(operator, goal_enu, yaw_deg, self.screens.chosen(operator))
                 return [Log(Level.INFO, "keyboard_manager", text), Emit(goal)]
             case ipc.Leave(reason):
                 return self._leave(operator, reason, now_ns)
@@ -168,7 +171,7 @@ class Operators:
                 return [*self.subscriptions.subscribe(operator, names, now_ns)]
             case ipc.ListOperations(number):
                 return [Emit(ipc.OperationList(number, self._operations.listed()), operator)]
-            case ipc.Check() | ipc.Preflight():
+            case ipc.Check() | ipc.Preflight() | ipc.Show():
                 return []  # answered before: no part of an operator's is asked
             case ipc.Renew(number):
                 operation = self._operations.get(number)
@@ -391,9 +394,24 @@ class Operators:
     def tell(self, told: TellOperator) -> list[Work]:
         return [Emit(told.event, self._requests.get(told.request_id).operator)]
 
-    def missing_messages(self, telemetry: Telemetry, now_ns: int) -> list[CommandLong]:
-        """Commands that ask the vehicle for what somebody subscribed to and does not hear."""
-        return [*self.subscriptions.missing(telemetry, now_ns)]
+    def missing_messages(
+        self, telemetry: Telemetry, now_ns: int, *, first: bool
+    ) -> list[CommandLong]:
+        """Commands that ask the vehicle for what somebody who is shown it has subscribed to and
+        does not hear; `first`: it is the first one."""
+
+        def shown(operator: int) -> bool:
+            return self.screens.shows(operator, telemetry.sysid, first=first)
+
+        return [*self.subscriptions.missing(telemetry, shown, now_ns)]
+
+    def heard_message(self, frame: Frame, now_ns: int, *, first: bool) -> list[Effect]:
+        """A good frame of a vehicle that somebody has subscribed to."""
+
+        def shown(operator: int) -> bool:
+            return self.screens.shows(operator, frame.sysid, first=first)
+
+        return self.subscriptions.heard(frame, shown, now_ns)
 
 
 def _end_of_stream(vehicle: int) -> ipc.Ask:

@@ -10,7 +10,6 @@ origin or a fresh position is compared with nobody: that it lacks them is a cond
 from __future__ import annotations
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.projection import Projection
 from gcs.gate.airspace.separation import Track, between_legs_m, closest_approach, is_too_close
 from gcs.gate.condition import Condition
 from gcs.gate.policy.policy import SeparationLimits
@@ -18,6 +17,7 @@ from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import GoTo
 from gcs.gate.states import State
 from gcs.session.work import ForOwner, Work, condition
+from gcs.station.neighbours import in_frame_of
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
@@ -52,8 +52,8 @@ class Separation:
             there = None if number == slot else other.flying(now_ns)
             if there is None or there.pos_ned is None:
                 continue
-            start = _in_frame_of(here, there, there.pos_ned)
-            end = _in_frame_of(here, there, _end_of(other, there.pos_ned))
+            start = in_frame_of(here, there, there.pos_ned)
+            end = in_frame_of(here, there, _end_of(other, there.pos_ned))
             if start is None or end is None:
                 continue
             wrong_m = (here.health.accuracy_h_m or 0.0) + (there.health.accuracy_h_m or 0.0)
@@ -97,7 +97,7 @@ class Separation:
         if here is None or there is None:
             return ""
         assert there.pos_ned is not None
-        seen_from_here = _in_frame_of(here, there, there.pos_ned)
+        seen_from_here = in_frame_of(here, there, there.pos_ned)
         if seen_from_here is None or here.pos_ned is None:
             return ""
         limits = self._limits
@@ -128,16 +128,6 @@ def _end_of(vehicle: Vehicle, pos_ned: Vec3) -> Vec3:
     if memory.state is State.LANDING:
         return (pos_ned[0], pos_ned[1], max(pos_ned[2], memory.ground_down_m or 0.0))
     return pos_ned if memory.hold is None else memory.hold.pos_ned
-
-
-def _in_frame_of(here: Telemetry, there: Telemetry, pos_ned: Vec3) -> Vec3 | None:
-    """A place in the local frame of `there` in the one of `here`; None where one is not known."""
-    if here.origin is None or there.origin is None:
-        return None
-    if (here.origin, here.autopilot.name) == (there.origin, there.autopilot.name):
-        return pos_ned
-    geodetic = Projection(there.origin, there.autopilot.name).geodetic_from_ned(pos_ned)
-    return Projection(here.origin, here.autopilot.name).ned_from_geodetic(*geodetic)
 
 
 def _track(telemetry: Telemetry, pos_ned: Vec3, now_ns: int) -> Track:

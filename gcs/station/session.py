@@ -30,11 +30,12 @@ from gcs.bridge.effects import (
 )
 from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
-from gcs.gate.condition import Condition
+from gcs.gate.condition import Condition, Severity
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import PositionSeen, Requested, Tick
 from gcs.gate.machine.gate import Gate
 from gcs.gate.requests import EndStream, GoTo
+from gcs.gate.states import Control, State
 from gcs.protocol.effects import Address, Send
 from gcs.session import announcements
 from gcs.session.effects import Effect, Emit, Finish
@@ -84,6 +85,7 @@ from gcs.session.work import (
     StopTransfer,
     StreamOver,
     TellOperator,
+    ToScreens,
     Work,
     condition,
 )
@@ -92,6 +94,7 @@ from gcs.station.ending import Ending
 from gcs.station.frame_intake import FramesRaisedError, Incoming
 from gcs.station.history import History
 from gcs.station.links import Links
+from gcs.station.neighbours import others_of
 from gcs.station.operator_lines import line
 from gcs.station.operators import Operators
 from gcs.station.preflight import Itself, before_arming, report
@@ -105,6 +108,7 @@ from gcs.station.waiting_for_vehicle import WaitingForVehicle
 from gcs.vehicle.record_items import fault, hello, introduction, recorded, sim_line
 from gcs.vehicle.snapshot import snapshot
 from gcs.vehicle.talk.telemetry import Telemetry
+from gcs.vehicle.vehicle import Vehicle
 from gcs.wire.messages import ParamSet
 
 OTHER_STATION_NS = 5_000_000_000
@@ -171,7 +175,8 @@ class Session:
         self._log_path = setup.log_path
         self._recording = bool(setup.log_path)
         self._recorded_bytes = 0
-        self._history = History()
+        self._histories = [History()]
+        """Of each vehicle, by its slot; the first one's has the lines of the log."""
         self._free_bytes: int | None = None
         self._snapshots = 0
         """That were due."""
@@ -293,6 +298,8 @@ class Session:
                 return [*of_clients, *of_vehicles, *self._ticks.wake(now_ns)]
             case OperatorJoined():
                 return self._welcome(given, now_ns)
+            case OperatorLine(operator, ipc.Show(sysid)):
+                return self._show(operator, sysid, now_ns)
             case OperatorLine(operator, ipc.Preflight() as asked):
                 return [Emit(self._preflight(asked, now_ns), operator)]
             case OperatorLine(operator, command):
@@ -371,7 +378,7 @@ class Session:
             case gate_effects.Outcome():
                 # Whoever waits for an end looks at the vehicle next: not at how it was before.
                 ended = self._operators.outcome(item, vehicle.sysid, now_ns)
-                return [Emit(self._snapshot(now_ns)), *ended]
+                return [*self._to_each_screen(now_ns), *ended]
             case gate_effects.StreamVerdict():
                 return self._operators.stream_verdict(item, vehicle.sysid, now_ns)
             case gate_effects.SendCommand(kind=CommandKind.ARM) if self._bridge.open:
@@ -392,7 +399,7 @@ class Session:
             case Log():
                 prefix = self._vehicles.prefix(owner)
                 told = announcements.log(item, now_ns, prefix)
-                self._history.logged(item, now_ns, prefix)
+                self._histories[FIRST_SLOT].logged(item, now_ns, prefix)
                 if self._bridge.open:
                     return [*told, *self._bridge.logged(item, vehicle, now_ns)]
                 return [*told]
@@ -424,6 +431,8 @@ class Session:
                 return self._operators.verdict(item, vehicle.sysid, now_ns)
             case TellOperator():
                 return self._operators.tell(item)
+            case ToScreens(event):
+                return [*self._to_screens(event, owner)]
             case EndSession(reason):
                 # After it, as the lost operators' requests end there.
                 held = self._bridge.bridge.leave()
@@ -473,6 +482,8 @@ class Session:
         work: list[Work] = [*self._links.heartbeat(now_ns), *self._remind()]
         if self._bridge.open:
             work += self._bridge.second(now_ns, self._links.counts, self._signatures)
+        elif len(self._vehicles) > 1:
+            work.append(self._bridge.status(now_ns, self._links.counts))
         work += self._signatures.second(now_ns)
         work += self._operators.second(now_ns)
         for sysid, stop in self._operators.unwatched(now_ns):
@@ -484,9 +495,15 @@ class Session:
         if self._setup.policy.arming.preflight == "no_fail":
             itself = self._itself(now_ns)
             work += self._vehicles.each(lambda each: before_arming(each, itself))
-        wanted = self._operators.missing_messages(first.telemetry, now_ns)
         work += self._vehicles.each(lambda each: each.second(now_ns))
-        return [*work, ForOwner(FIRST_SLOT, tuple(first.send_own(wanted, now_ns)))]
+        return [*work, *self._vehicles.each(lambda each: self._ask_for_messages(each, now_ns))]
+
+    def _ask_for_messages(self, vehicle: Vehicle, now_ns: int) -> list[Work]:
+        if vehicle.telemetry is None:
+            return []
+        first = vehicle is self._vehicles.first
+        wanted = self._operators.missing_messages(vehicle.telemetry, now_ns, first=first)
+        return vehicle.send_own(wanted, now_ns)
 
     def _remind(self) -> list[Work]:
         return self._vehicles.each(lambda each: each.remind())
@@ -498,10 +515,27 @@ class Session:
         operator, fence = joined.operator, self._vehicles.first.port.fence_shapes
         return [
             Emit(hello(self._setup, self._log_path, fence, operator), operator),
-            Emit(self._snapshot(now_ns), operator),
-            *(Emit(event, operator) for event in self._history.told()),
+            Emit(self._snapshot(self._vehicles.first, now_ns), operator),
+            *(Emit(event, operator) for event in self._histories[FIRST_SLOT].told()),
             *self._operators.join(operator, joined.name, joined.hold_on_leave),
         ]
+
+    def _show(self, operator: int, sysid: int, now_ns: int) -> list[Work]:
+        """What was before of the vehicle that it is shown from now on; a trail without the log,
+        which it has."""
+        self._operators.screens.show(operator, sysid)
+        slot = self._vehicles.slot_of(sysid) if sysid else FIRST_SLOT
+        if slot is None:
+            return [Emit(self._snapshot(None, now_ns), operator)]
+        vehicle = self._vehicles.of_owner(slot)
+        history = self._history(slot)
+        told: list[ipc.Event] = [
+            ipc.Fences(vehicle.port.fence_shapes),
+            self._snapshot(vehicle, now_ns),
+            history.way(),
+            *history.on_board.all,
+        ]
+        return [Emit(event, operator) for event in told]
 
     # ------------------------------------------------------------------------- preflight
 
@@ -542,25 +576,55 @@ class Session:
 
     def _shown(self, now_ns: int) -> list[Work]:
         """What screens are told ten times a second."""
-        seen = self._snapshot(now_ns)
-        self._history.seen(seen)
-        return [Emit(seen), *map(Emit, self._history.on_board.news(self._vehicles.first))]
+        work = self._to_each_screen(now_ns)
+        for slot, vehicle in enumerate(self._vehicles):
+            for event in self._history(slot).on_board.news(vehicle):
+                work += self._to_screens(event, slot)
+        return [*work]
 
-    def _snapshot(self, now_ns: int) -> ipc.Snapshot:
+    def _to_each_screen(self, now_ns: int) -> list[Emit]:
+        """To each operator that of the vehicle that it is shown."""
+        told: list[Emit] = []
+        for slot, vehicle in enumerate(self._vehicles):
+            seen = self._snapshot(vehicle, now_ns)
+            self._history(slot).seen(seen)
+            told += self._to_screens(seen, slot)
+        met = frozenset(vehicle.sysid for vehicle in self._vehicles)
+        for operator in self._operators.screens.elsewhere(met):
+            told.append(Emit(self._snapshot(None, now_ns), operator))
+        return told
+
+    def _to_screens(self, event: ipc.Event, slot: int) -> list[Emit]:
+        sysid = self._vehicles.of_owner(slot).sysid
+        return self._operators.screens.tell(event, sysid, first=slot == FIRST_SLOT)
+
+    def _history(self, slot: int) -> History:
+        while len(self._histories) <= slot:
+            self._histories.append(History())
+        return self._histories[slot]
+
+    def _snapshot(self, vehicle: Vehicle | None, now_ns: int) -> ipc.Snapshot:
+        """None: of one that was not met."""
         first = self._vehicles.first
-        return snapshot(
-            first.gate,
-            first.telemetry,
-            now_ns,
-            mission_total=first.missions.total,
-            losses=first.presence.losses,
+        of_station = ipc.Snapshot(
+            time_ns=now_ns,
+            state=State.NO_VEHICLE.name,
+            control=Control.NONE.name,
+            severity=Severity.NOMINAL.name,
+            conditions=[],
+            lost_pct=0.0,
             log_path=self._log_path,
             recording=self._recording,
-            recorded_bytes=self._recorded_bytes,
+            recorded_mb=self._recorded_bytes / 1e6,
             vehicles=self._vehicles.heard_names(now_ns),
             listening=first.listening(now_ns),
             in_control=self._operators.in_control,
+            others=others_of(self._vehicles, vehicle),
         )
+        if vehicle is None:
+            return of_station
+        total, losses = vehicle.missions.total, vehicle.presence.losses
+        return snapshot(of_station, vehicle.gate, vehicle.telemetry, total, losses)
 
 
 def _disk_low(news: DiskLow) -> Log:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from gcs import ipc
 from gcs.session.effects import Effect, Emit
@@ -30,8 +30,10 @@ class Subscriptions:
         self.subscribed: dict[int, dict[int, int]] = {}
         """Of each message id that somebody has, or had, subscribed to: when which operator was told
         last."""
-        self._heard_ns: dict[int, int] = {}
-        self._asked_ns: dict[int, int] = {}
+        self._since_ns: dict[int, int] = {}
+        self._heard_ns: dict[tuple[int, int], int] = {}
+        self._asked_ns: dict[tuple[int, int], int] = {}
+        """Of each vehicle and message id."""
         self._patience_ns = times.real_ns(PATIENCE_NS)
 
     def subscribe(self, operator: int, names: list[str], now_ns: int) -> list[Effect]:
@@ -40,7 +42,7 @@ class Subscriptions:
         known = [MESSAGES_BY_NAME[name].msgid for name in names if name in MESSAGES_BY_NAME]
         for msgid in known[:MAX_MESSAGES]:
             self.subscribed.setdefault(msgid, {})[operator] = 0
-            self._asked_ns.setdefault(msgid, now_ns)
+            self._since_ns.setdefault(msgid, now_ns)
         unknown = [name for name in names if name not in MESSAGES_BY_NAME]
         if unknown:
             text = f"no such MAVLink message: {', '.join(unknown[:3])}"
@@ -52,13 +54,18 @@ class Subscriptions:
             return [Emit(ipc.Trouble(text), operator)]
         return []
 
-    def missing(self, telemetry: Telemetry, now_ns: int) -> Iterator[CommandLong]:
+    def missing(
+        self, telemetry: Telemetry, shown: Callable[[int], bool], now_ns: int
+    ) -> Iterator[CommandLong]:
         """SET_MESSAGE_INTERVAL for what is subscribed to and does not come by itself: many
-        vehicles, ArduPilot above all, send little unasked."""
+        vehicles, ArduPilot above all, send little unasked.  `shown`: whether an operator is shown
+        that vehicle."""
         for msgid, operators in self.subscribed.items():
-            heard_ns, asked_ns = self._heard_ns.get(msgid, 0), self._asked_ns[msgid]
-            if operators and now_ns - max(heard_ns, asked_ns) > self._patience_ns:
-                self._asked_ns[msgid] = now_ns
+            key = telemetry.sysid, msgid
+            asked_ns = self._asked_ns.get(key, self._since_ns[msgid])
+            silent = now_ns - max(self._heard_ns.get(key, 0), asked_ns) > self._patience_ns
+            if silent and any(map(shown, operators)):
+                self._asked_ns[key] = now_ns
                 yield message_interval(telemetry, msgid, ASKED_HZ)
 
     def forget(self, operator: int) -> None:
@@ -66,13 +73,17 @@ class Subscriptions:
         for operators in self.subscribed.values():
             operators.pop(operator, None)
 
-    def heard(self, frame: Frame, now_ns: int) -> list[Effect]:
-        """A good frame of the vehicle: who is told of it."""
+    def heard(self, frame: Frame, shown: Callable[[int], bool], now_ns: int) -> list[Effect]:
+        """A good frame of a vehicle: who is told of it."""
         operators = self.subscribed.get(frame.msgid)
         if not operators:
             return []
-        self._heard_ns[frame.msgid] = now_ns
-        due = [each for each, told in operators.items() if now_ns - told >= self._interval_ns]
+        self._heard_ns[frame.sysid, frame.msgid] = now_ns
+        due = [
+            each
+            for each, told in operators.items()
+            if now_ns - told >= self._interval_ns and shown(each)
+        ]
         if not due:
             return []
         fields = fields_of(frame)

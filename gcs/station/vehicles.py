@@ -1,7 +1,8 @@
 """All vehicles of a session, each with a slot of its own, by which the queue knows its work.
 
-Slot 0 is there from the start, before a vehicle is heard.  A bridge without a chosen vehicle meets
-every other autopilot that it hears, too; any other station flies one vehicle.
+Slot 0 is there from the start, before a vehicle is heard.  A bridge, or the station of `gcs fly`,
+without a chosen vehicle meets every other autopilot that it hears, too; any other station flies one
+vehicle.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ NODE: Final = "link"
 
 
 class Vehicles:
-    """One or several; `Vehicles.first` is the one that the screens of operators show."""
+    """One or several; `Vehicles.first` is the one that is meant where none is named, and shown to
+    operators who have chosen none."""
 
     def __init__(self, config: StationConfig, policy: Policy, times: Times, now_ns: int) -> None:
         self._config = config
@@ -43,6 +45,7 @@ class Vehicles:
         self.first = Vehicle(config, policy, times, now_ns)
         self._all = [self.first]
         self._slots: dict[int, int] = {}
+        self._first_is_meant = False
         self._told_too_many = False
         self._told_twice: set[int] = set()
         """System ids that were heard on two links at once, which was told."""
@@ -210,7 +213,7 @@ class Vehicles:
             return [] if told or self.closed else [Log(Level.WARNING, NODE, text)]
         slot = self._slots[frame.sysid] = len(self._all)
         config = msgspec.structs.replace(self._config, target_sysid=frame.sysid)
-        vehicle = Vehicle(config, self._policy, self._times, now_ns, shown=False)
+        vehicle = Vehicle(config, self._policy, self._times, now_ns, first=False)
         self._all.append(vehicle)
         wrong: list[Work] = [
             GateInput(inputs.ConditionChanged(name, True, text))
@@ -221,9 +224,25 @@ class Vehicles:
 
     # ---------------------------------------------------------------------------- requests
 
+    def why_unnamed(self, *, asked: bool) -> Refusal | None:
+        """Why a request that names no vehicle is for none, where there are several and each is to
+        be named.  `asked`: it is one, not only the question what would be said to it.
+
+        Once a request was for the only one, whoever comes later changes nothing, as with `Roster`.
+        """
+        if not self._config.fleet or self._first_is_meant:
+            return None
+        if len(self._all) == 1:
+            self._first_is_meant = asked and self.first.telemetry is not None
+            return None
+        names = [each.telemetry.label for each in self._all if each.telemetry is not None]
+        how = f"name one, by --vehicle or by the words `vehicle {self.first.sysid}`"
+        sentence = f"{len(names)} vehicles are heard: {', '.join(names)}; {how}"
+        return Refusal(Code.SEVERAL_VEHICLES, sentence, (("vehicles", float(len(names))),))
+
     def owner_for(self, sysid: int) -> int:
         """Whose a request for the vehicle with that system id is (0: the first); the station's
-        where it is not there."""
+        where that one is not there."""
         slot = self.slot_of(sysid) if sysid else FIRST
         return STATION if slot is None else slot
 

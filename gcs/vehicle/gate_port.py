@@ -21,7 +21,7 @@ from gcs.gate.requests import GoTo
 from gcs.gate.states import State
 from gcs.report import FenceShape, StopItem
 from gcs.session import announcements
-from gcs.session.effects import Effect, Record
+from gcs.session.effects import Record
 from gcs.session.work import (
     GATE_ANSWERED,
     CheckStart,
@@ -47,11 +47,11 @@ the others hold numbers, which are others with each message."""
 class GatePort:
     """Before a vehicle is heard the gate is one that refuses everything: NO_VEHICLE."""
 
-    def __init__(self, policy: Policy, now_ns: int, *, shown: bool = True) -> None:
-        """`policy` is on the session's clock: see `Times.policy`.  `shown`: operators are told of
-        its transitions and its fence."""
+    def __init__(self, policy: Policy, now_ns: int, *, first: bool = True) -> None:
+        """`policy` is on the session's clock: see `Times.policy`.  `first`: the fence of the record
+        is that of this vehicle."""
         self.policy = policy
-        self._shown = shown
+        self._first = first
         self.gate = Gate(self.policy, "", now_ns)
         self.bad_start: Refusal | None = None
         self.bad_home: Refusal | None = None
@@ -136,16 +136,12 @@ class GatePort:
             case effects.Transition():
                 goal_ned = self.gate.active_goal_ned
                 wrong = announcements.conditions(self.gate)
-                return self._for_screens(announcements.transition(effect, goal_ned, wrong, sysid))
+                return announcements.transition(effect, goal_ned, wrong, sysid)
             case effects.Say(level, text):
                 return [Log(level, announcements.NODE, text)]
             case effects.SwitchedFence(on):
                 self._fence_on = on
                 return [PlaceFence()]
-
-    def _for_screens(self, told: list[Effect]) -> list[Work]:
-        """All of it for the vehicle that is shown; of another one only the record."""
-        return [each for each in told if self._shown or isinstance(each, Record)]
 
     def predicted_stop(self, telemetry: Telemetry) -> list[Work]:
         """Where the gate predicts that the vehicle comes to rest; in flight only."""
@@ -173,13 +169,11 @@ class GatePort:
             telemetry.origin,
             fence_on=self._fence_on,
         )
-        fence: list[Effect] = []
-        if self._shown:
-            fence = announcements.fence(verifier.zones, telemetry.origin, self.policy)
+        fence = announcements.fence(verifier.zones, telemetry.origin, self.policy)
         return [
             GateInput(inputs.VerifierChanged(verifier)),
             *announcements.origin(telemetry.sysid, telemetry.origin),
-            *fence,
+            *(each for each in fence if self._first or not isinstance(each, Record)),
             *([] if telemetry.pos_ned is None else self._breached(telemetry.pos_ned)),
         ]
 

@@ -54,17 +54,17 @@ class VehicleParts:
         times: Times,
         now_ns: int,
         *,
-        shown: bool,
+        first: bool,
     ) -> None:
-        """`shown`: it is the one that the screens of operators show."""
+        """`first`: it is the one that was there first."""
         self.config = config
         self._policy = policy
-        self.shown = shown
+        self.first = first
         self.times = times
         gone_ns = round(times.policy(policy).heartbeat_age_s * 1e9)
         self.start_ns = now_ns
         own = self.own = Address(config.sysid, config.compid)
-        self.port = GatePort(times.policy(policy), now_ns, shown=shown)
+        self.port = GatePort(times.policy(policy), now_ns, first=first)
         self.commands = Commands(own, times)
         self.discovery = Discovery(times)
         self.settings = Settings(
@@ -110,7 +110,7 @@ class VehicleParts:
     @property
     def of(self) -> str:
         """In names in the record, of which the first vehicle's are plain."""
-        return "" if self.shown else f"-{self.sysid}"
+        return "" if self.first else f"-{self.sysid}"
 
     def view(self, telemetry: Telemetry) -> VehicleView:
         """What a mission job is to know of it."""

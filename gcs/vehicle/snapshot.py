@@ -14,35 +14,23 @@ from gcs.vehicle.talk.telemetry import Telemetry
 
 
 def snapshot(
+    of_station: ipc.Snapshot,
     gate: Gate,
     telemetry: Telemetry | None,
-    now_ns: int,
-    *,
     mission_total: int | None,
     losses: SequenceTracker,
-    log_path: str,
-    recording: bool,
-    recorded_bytes: int,
-    vehicles: list[str],
-    listening: bool,
-    in_control: ipc.OperatorInfo | None,
 ) -> ipc.Snapshot:
-    """Everything a panel shows; what is not known is None, never a zero."""
-    goal_ned = gate.active_goal_ned
-    without_vehicle = ipc.Snapshot(
-        time_ns=now_ns,
+    """Everything a panel shows; what is not known is None, never a zero.  `of_station`: what is no
+    vehicle's."""
+    now_ns, goal_ned = of_station.time_ns, gate.active_goal_ned
+    without_vehicle = msgspec.structs.replace(
+        of_station,
         state=gate.state.name,
         control=gate.control.name,
         severity=gate.severity.name,
         conditions=[condition.value for condition in gate.conditions],
         active_goal_enu=None if goal_ned is None else enu_from_ned(goal_ned),
         lost_pct=lost_pct(losses),
-        log_path=log_path,
-        recording=recording,
-        recorded_mb=recorded_bytes / 1e6,
-        vehicles=vehicles,
-        listening=listening,
-        in_control=in_control,
     )
     if telemetry is None:
         return without_vehicle

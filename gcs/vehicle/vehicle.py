@@ -69,10 +69,10 @@ class Vehicle(VehicleParts):
         times: Times,
         now_ns: int,
         *,
-        shown: bool = True,
+        first: bool = True,
     ) -> None:
-        """`shown`: it is the one that the screens of operators show."""
-        super().__init__(config, policy, times, now_ns, shown=shown)
+        """`first`: it is the one that was there first."""
+        super().__init__(config, policy, times, now_ns, first=first)
         self.frames = VehicleFrames(self)
         """The way in of what it sends."""
 
@@ -208,9 +208,11 @@ class Vehicle(VehicleParts):
         return refusal
 
     def listening(self, now_ns: int) -> bool:
-        """Whether it may still turn out that there are several vehicles (one of our own is alone),
-        or the return height or rally points, which a return needs, are still on their way."""
-        several = self.config.sim is None and self.roster.listening(now_ns)
+        """Whether it may still turn out that there are several vehicles (where one of our own is
+        not alone), or the return height or rally points, which a return needs, are still on their
+        way."""
+        alone = self.config.sim is not None and self.config.sim.count == 1
+        several = not alone and self.roster.listening(now_ns)
         if several or self.telemetry is None:
             return several
         return not self.telemetry.return_told or not self.returns.rally.answered

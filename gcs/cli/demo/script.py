@@ -164,11 +164,11 @@ north of it."""
 
 
 def fleet_config(autopilot: str, log_dir: str, timeout_s: float) -> StationConfig:
-    """A bridge without clients, which flies all that it meets."""
+    """It flies all that it meets."""
     higher = {"px4": "GF_MAX_VER_DIST", "ardupilot": "FENCE_ALT_MAX"}[autopilot]
     failsafes = {**FAILSAFES_ON[autopilot], higher: 30.0}
     return StationConfig(
-        bridge=True,
+        fleet=True,
         sim=SimConfig(autopilot=autopilot, params=failsafes, count=FLEET),
         log_dir=log_dir,
         name="fleet",

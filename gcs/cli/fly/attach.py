@@ -63,13 +63,11 @@ def attach(
         station.send(Ask(0, "station_take"))
     if plain:
         from gcs.cli.fly.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
-        from gcs.operator.chosen_vehicle import ChosenVehicle
         from gcs.operator.interrupts import Interrupts
 
-        connection = station if vehicle is None else ChosenVehicle(station, vehicle)
-        how = PlainConfig(timeout, 2, as_json, strict)
+        how = PlainConfig(timeout, 2, as_json, strict, vehicle=vehicle or 0)
         with Interrupts() as interrupts:
-            console = Plain(connection, interrupts, how, to_stdout, to_stderr)
+            console = Plain(station, interrupts, how, to_stdout, to_stderr)
             ctx.exit(console.run(stdin_input()))
     from gcs.cli.settings import configured_keymap
     from gcs.tui.app import FlyApp

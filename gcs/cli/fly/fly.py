@@ -132,7 +132,9 @@ def fly(
         vehicle=vehicle,
     )
     rule_path = verifier or msgspec.UNSET
-    config = msgspec.structs.replace(config, keep=keep, rule_path=rule_path)
+    config = msgspec.structs.replace(
+        config, keep=keep, rule_path=rule_path, fleet=vehicle is None
+    )
     if plain and mission:
         raise click.UsageError("--mission is for the keyboard; with --plain type: mission fly FILE")
     mission_path = _mission(mission) if mission else ""

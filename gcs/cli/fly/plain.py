@@ -5,15 +5,18 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import msgspec
 
 from gcs import ipc, request_words
 from gcs.cli.fly.line_queue import AtOnce, BadLine, LineQueue
 from gcs.exit_codes import ExitCode
 from gcs.operator import event_text, line_parser, preflight
+from gcs.operator.chosen_vehicle import ChosenVehicle
 from gcs.operator.client import Polling, StationEnded
 from gcs.operator.conversation import TrackedRequest, exit_code_of
-from gcs.operator.dialogue import Dialogue, InterruptSource
+from gcs.operator.dialogue import SETTLE_WAIT_S, Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
 from gcs.operator.event_text import WarningFilter
 from gcs.operator.standstill import Standstill
@@ -26,7 +29,8 @@ Printer = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class PlainConfig:
-    """`min_level` is of the log lines, 1 debug .. 5 fatal; time-outs in seconds."""
+    """`min_level` is of the log lines, 1 debug .. 5 fatal; time-outs in seconds; `vehicle`: the
+    system id of the one that is meant at first, 0 for none."""
 
     timeout_s: float = 10.0
     min_level: int = 2
@@ -34,6 +38,7 @@ class PlainConfig:
     strict: bool = False
     speedup: float = 1.0
     simulated: bool = False
+    vehicle: int = 0
 
 
 class _LeaveNowError(Exception):
@@ -57,9 +62,9 @@ class Plain:
         err: Printer,
     ) -> None:
         self._config = config
-        self._connection = connection
+        self._connection = ChosenVehicle(connection, config.vehicle)
         self._out, self._err = out, err
-        self._dialogue = Dialogue(connection, interrupts, self._on_event)
+        self._dialogue = Dialogue(self._connection, interrupts, self._on_event)
         self._warnings = WarningFilter(cautions=True)
         self._standstill = Standstill()
         self._bad_lines = False
@@ -106,7 +111,7 @@ class Plain:
                 self._tell_dropped(dropped, each.line)
             if each.dropped and not lines.typed:
                 self._err(overtaken(each))
-            self._act_at_once(each.line)
+            self._act_at_once(each.line if not _chosen_before(each) else _for_every(each.line))
         if lines.typed_end:
             raise _LeaveNowError
         self._watch(lines)
@@ -129,7 +134,12 @@ class Plain:
                 self._show_help()
             case request_words.Quit():
                 raise _LeaveNowError
-            case request_words.Wait() | request_words.FlyVelocity() | request_words.ShowPreflight():
+            case (
+                request_words.Wait()
+                | request_words.FlyVelocity()
+                | request_words.ChooseVehicle()
+                | request_words.ShowPreflight()
+            ):
                 raise AssertionError("it has its turn")
 
     def _send_at_once(self, line: line_parser.Line) -> None:
@@ -180,6 +190,8 @@ class Plain:
                 self._dialogue.send(requests[0], line.text)
             case request_words.FlyVelocity():
                 self._fly_velocity(line.text, line.action)
+            case request_words.ChooseVehicle(sysid):
+                self._choose(sysid)
             case request_words.Wait(seconds):
                 seconds /= self._config.speedup
                 self._dialogue.wait_until(lambda: self._overtaken, seconds)
@@ -196,6 +208,24 @@ class Plain:
                 self._show_help()
             case request_words.Quit():
                 return
+
+    def _choose(self, sysid: int) -> None:
+        """Until it is heard.  What follows is for that one, also where it is not: for no other."""
+        dialogue = self._dialogue
+        self._connection.choose(sysid)
+
+        def there() -> bool:
+            seen = dialogue.snapshot
+            return self._overtaken or (seen is not None and seen.sysid == sysid)
+
+        dialogue.wait_until(there, self._config.timeout_s)
+        dialogue.wait_until(lambda: self._overtaken or dialogue.can_be_judged, SETTLE_WAIT_S)
+        if not there():
+            self._bad_lines = True
+            heard = ", ".join(dialogue.snapshot.vehicles if dialogue.snapshot else []) or "none"
+            self._err(f"vehicle {sysid}: not heard; there are: {heard}")
+        elif not self._config.as_json:
+            self._out(event_text.state_line(dialogue.snapshot, dialogue.number))
 
     def _fly_velocity(self, text: str, asked: request_words.FlyVelocity) -> None:
         """A stream of one velocity, until its time is over, it is refused on the way, as before the
@@ -290,6 +320,21 @@ class Plain:
         elif self._preflight_fails:
             undone = ExitCode.DIFFERENT
         return self._dialogue.first_failure() or undone
+
+
+def _chosen_before(stop: AtOnce) -> bool:
+    """A choice of another vehicle stood before it, and is dropped."""
+    lines = (each for each in stop.dropped if isinstance(each, line_parser.Line))
+    return any(isinstance(each.action, request_words.ChooseVehicle) for each in lines)
+
+
+def _for_every(line: line_parser.Line | BadLine) -> line_parser.Line | BadLine:
+    """A stop that may be meant for any of them."""
+    if isinstance(line, BadLine) or not isinstance(line.action, request_words.SendRequests):
+        return line
+    requests = line.action.requests
+    every = [msgspec.structs.replace(each, vehicle=ipc.EVERY) for each in requests]
+    return replace(line, action=request_words.SendRequests(tuple(every)))
 
 
 def overtaken(stop: AtOnce) -> str:

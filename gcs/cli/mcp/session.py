@@ -16,8 +16,8 @@ from gcs.cli.options import asked_for
 from gcs.cli.running import joined_station, refuse_differences, station_for
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
-from gcs.operator.chosen_vehicle import ChosenVehicle
-from gcs.operator.client import StationClient, Way
+from gcs.operator.chosen_vehicle import ListenedVehicle
+from gcs.operator.client import Listened, StationClient
 from gcs.operator.errors import ExitError
 from gcs.operator.failures import Disconnected
 from gcs.operator.station import Station
@@ -33,7 +33,7 @@ def run(
     """Until the client closes its end.  Raises ExitError where there is no station."""
     found = None if config.sim is not None else station_for(config.endpoints)
     speedup = config.speedup
-    way: Way
+    way: Listened
     if found is None:
         config = msgspec.structs.replace(config, operator=f"agent {name}, pid {os.getpid()}")
         way, digest = StationClient.start(config), policy_digest(policy)
@@ -42,7 +42,7 @@ def run(
         way = joined_station(found, f"agent {name}")
         policy, digest, speedup = found.policy, found.policy_digest, found.speedup
         if config.target_sysid and found.vehicles:
-            way = ChosenVehicle(way, config.target_sysid)
+            way = ListenedVehicle(way, config.target_sysid)
     station = Station(way)
     try:
         station.wait_until(lambda: station.talk.hello is not None, START_WAIT_S)

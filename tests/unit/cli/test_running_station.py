@@ -202,16 +202,6 @@ def test_a_stop_takes_any_policy_and_log_but_stops_no_other_vehicle(
 
 THERE = ["1/1 px4 quadrotor", "2/1 ardupilot quadrotor"]
 BRIDGE = msgspec.structs.replace(FOUND, vehicles=THERE)
-AT_SECOND = ipc.BridgeVehicle(
-    2, "2/1 ardupilot quadrotor", "HOVERING", "OURS", "NOMINAL", [], "GUIDED", True
-)
-
-
-class SeveralVehicles(FakeStation):
-    """Of a bridge: it tells its vehicles before each snapshot."""
-
-    def tick(self, now_s: float) -> list[ipc.Event]:
-        return [ipc.BridgeStatus(0, [], [], [AT_SECOND]), *super().tick(now_s)]
 
 
 @pytest.mark.parametrize(
@@ -229,7 +219,7 @@ def test_of_a_bridge_the_vehicle_that_was_named_is_asked_and_no_other(
     asked: list[str],
 ) -> None:
     found[:] = [BRIDGE]
-    connection.station = SeveralVehicles("airborne")
+    connection.station = FakeStation("airborne")
     gcs(*typed, "--link", LINK, "--vehicle", 2, "--wait", 1)
     sent = [each for each in connection.sent if isinstance(each, ipc.Ask)]
     assert [(each.word, each.vehicle) for each in sent] == [(word, 2) for word in asked]
@@ -239,10 +229,10 @@ def test_the_status_of_a_vehicle_of_a_bridge_is_of_that_one(
     found: list[Description], connection: FakeConnection
 ) -> None:
     found[:] = [BRIDGE]
-    connection.station = SeveralVehicles("airborne")
+    connection.station = FakeStation("airborne")
     ended = gcs("status", "--link", LINK, "--vehicle", 2)
     assert ended.exit_code == ExitCode.DONE, ended.output
-    assert "2/1 ardupilot quadrotor" in ended.output
+    assert "2/1 px4 quadrotor" in ended.output
 
 
 def test_a_stop_of_the_first_vehicle_of_a_bridge_is_for_that_one_alone(

@@ -54,6 +54,9 @@ class FakeStation:
     time_s: float = 0.0
     in_control: ipc.OperatorInfo | None = FIRST
     stream_told: str = ""
+    shown: int = 1
+    """The system id of the vehicle that is told of; all of them fly alike."""
+    others: list[ipc.OtherVehicle] = field(default_factory=list)
     refusals: dict[ipc.Vec3, tuple[str, str]] = field(default_factory=dict)
     """Goals that are refused, with code and sentence."""
     preflight_rows: list[ipc.PreflightRow] = field(default_factory=list)
@@ -93,6 +96,9 @@ class FakeStation:
                 return [self._log(f"Keyboard: {goal_enu}")]
             case ipc.Ask():
                 return self._asked(command, now_s)
+            case ipc.Show(sysid):
+                self.shown = sysid
+                return [self.snapshot(), ipc.History([], [])]
             case ipc.Stream(v_enu=v_enu):
                 return self._streamed(v_enu)
             case ipc.Check(asked):
@@ -286,7 +292,7 @@ class FakeStation:
             control=self.control,
             severity="NOMINAL",
             conditions=[],
-            vehicle="1/1 px4 quadrotor" if heard else "",
+            vehicle=f"{self.shown}/1 px4 quadrotor" if heard else "",
             mode="OFFBOARD" if self.control == "OURS" else "AUTO.LOITER",
             armed=self.armed if heard else None,
             landed=self._landed(),
@@ -308,6 +314,7 @@ class FakeStation:
             recording=True,
             recorded_mb=1.2,
             in_control=self.in_control,
+            others=self.others,
         )
 
 

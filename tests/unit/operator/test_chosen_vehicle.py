@@ -12,10 +12,15 @@ from gcs.operator.client import Polled, Readable, StationEvent
 from tests.unit.operator.fake_station import FakeConnection, FakeStation
 
 FIRST = msgspec.structs.replace(FakeStation().snapshot(), vehicle="1/1 px4 quadrotor")
-SECOND = ipc.BridgeVehicle(
-    2, "2/1 ardupilot quadrotor", "MOVING", "OURS", "CAUTION", ["too_close"], "GUIDED", True,
-    pos_enu=(1.0, 2.0, 3.0), v_enu=(0.5, 0.0, 0.0), battery_pct=71.0,
-)  # fmt: skip
+SECOND = msgspec.structs.replace(FIRST, vehicle="2/1 ardupilot quadrotor")
+NOT_MET = msgspec.structs.replace(FIRST, vehicle="")
+ASKS: tuple[ipc.Command, ...] = (
+    ipc.Ask(1, "land"),
+    ipc.Stream(v_enu=(1.0, 0.0, 0.0)),
+    ipc.Preflight(2),
+    ipc.Leave("quit"),
+    ipc.Ask(3, "abort", vehicle=ipc.EVERY),
+)
 
 
 class Told(FakeConnection):
@@ -30,35 +35,27 @@ class Told(FakeConnection):
         return Polled(events)
 
 
-def seen(chosen: ChosenVehicle, told: Told, *events: StationEvent) -> ipc.Snapshot:
-    told.next = [*events, FIRST]
-    found = chosen.poll(0.0).events[-1]
-    assert isinstance(found, ipc.Snapshot)
-    return found
-
-
-def test_what_is_asked_is_asked_of_the_chosen_one() -> None:
+def test_what_is_asked_is_asked_of_the_chosen_one_but_a_stop_of_every_one() -> None:
     told = Told()
-    chosen = ChosenVehicle(told, 2)
-    for command in (ipc.Ask(1, "land"), ipc.Stream(v_enu=(1.0, 0.0, 0.0)), ipc.Leave("quit")):
+    chosen = ChosenVehicle(told)
+    for command in ASKS:
         chosen.send(command)
-    assert [getattr(each, "vehicle", None) for each in told.sent] == [2, 2, None]
+    assert told.sent == [*ASKS], "none is chosen: the station knows what that means"
+    chosen.choose(2)
+    chosen.send(ipc.Check(ipc.Ask(4, "arm")))
+    for command in ASKS:
+        chosen.send(command)
+    show, check, *asked = told.sent[len(ASKS) :]
+    assert show == ipc.Show(2)
+    assert check == ipc.Check(ipc.Ask(4, "arm", vehicle=2))
+    assert [getattr(each, "vehicle", None) for each in asked] == [2, 2, 2, None, ipc.EVERY]
 
 
-def test_its_snapshots_are_of_the_chosen_one() -> None:
+def test_snapshots_of_the_one_before_that_were_under_way_are_passed_over() -> None:
     told = Told()
-    chosen = ChosenVehicle(told, 2)
-    before = seen(chosen, told)
-    assert (before.vehicle, before.state) == ("", "NO_VEHICLE")
-    shown = seen(chosen, told, ipc.BridgeStatus(0, [], [], [SECOND]))
-    assert (shown.vehicle, shown.state) == ("2/1 ardupilot quadrotor", "MOVING")
-    assert (shown.pos_enu, shown.battery_pct) == ((1.0, 2.0, 3.0), 71.0)
-    assert (shown.log_path, shown.in_control) == (FIRST.log_path, FIRST.in_control)
-    assert shown.home_enu is None, "that is not told of it"
-    gone = seen(chosen, told, ipc.BridgeStatus(1, [], [], []))
-    assert gone.vehicle == ""
-
-
-def test_of_the_first_one_all_is_known() -> None:
-    told = Told()
-    assert seen(ChosenVehicle(told, 1), told) == FIRST
+    chosen = ChosenVehicle(told)
+    told.next = [FIRST]
+    assert chosen.poll(0.0).events == [FIRST]
+    chosen.choose(2)
+    told.next = [FIRST, NOT_MET, SECOND]
+    assert chosen.poll(0.0).events == [NOT_MET, SECOND]

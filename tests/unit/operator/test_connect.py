@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
@@ -12,7 +11,7 @@ import gcs
 from gcs import ipc
 from gcs.exit_codes import ExitCode
 from gcs.operator import joined
-from gcs.operator.client import StationClient, StationEvent
+from gcs.operator.client import StationClient
 from gcs.operator.differences import Difference
 from gcs.operator.joined import JoinedStation
 from gcs.policy_digest import policy_digest
@@ -74,32 +73,21 @@ def test_what_the_running_station_has_otherwise_is_told(
 
 THERE = ["1/1 px4 quadrotor", "2/1 ardupilot quadrotor"]
 BRIDGE = msgspec.structs.replace(RUNNING, vehicles=THERE)
-AT_SECOND = ipc.BridgeVehicle(
-    2, "2/1 ardupilot quadrotor", "HOVERING", "OURS", "NOMINAL", [], "GUIDED", True
-)
 
 
-class BridgeWay(FakeWay):
-    """To a bridge: its vehicles are told before its first snapshot."""
-
-    def listen(self, on_event: Callable[[StationEvent], None]) -> None:
-        on_event(ipc.BridgeStatus(0, [], [], [AT_SECOND]))
-        super().listen(on_event)
-
-
-def test_of_a_bridge_one_vehicle_is_flown(monkeypatch: pytest.MonkeyPatch) -> None:
-    way = BridgeWay()
+def test_of_several_one_is_flown_and_then_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    way = FakeWay()
     monkeypatch.setattr(joined, "running_stations", lambda: [BRIDGE])
     monkeypatch.setattr(JoinedStation, "join", lambda *_, **__: way)
     with gcs.connect(LINK, vehicle=2) as station:
-        assert station.snapshot.vehicle == "2/1 ardupilot quadrotor"
-        assert station.state == "HOVERING"
+        assert station.snapshot.vehicle == "2/1 px4 quadrotor"
         station.abort(wait=False)
-        way.tell(ipc.StateEvent("HOVERING", "HOLDING", "", "OURS", "NOMINAL"))
-        assert station.state == "HOVERING", "that may have been another vehicle"
-        with pytest.raises(gcs.Refused, match="only the first one's messages"):
-            station.telemetry("BATTERY_STATUS")
-    assert [each.vehicle for each in way.sent if isinstance(each, ipc.Ask)] == [2]
+        station.choose(1)
+        assert station.snapshot.vehicle == "1/1 px4 quadrotor"
+        station.abort(wait=False)
+        with pytest.raises(gcs.BadArgument, match="a system id, 1 to 255"):
+            station.choose(0)
+    assert [each.vehicle for each in way.sent if isinstance(each, ipc.Ask)] == [2, 1]
 
 
 def test_a_vehicle_that_is_not_there_is_told_with_those_that_are(

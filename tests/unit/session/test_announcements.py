@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from gcs import ipc
 from gcs.gate.airspace.projection import Origin
@@ -19,20 +20,20 @@ from gcs.record.derived.gate_json import GateJson
 from gcs.record.derived.vehicle_json import VehicleJson
 from gcs.report import ConditionItem, FenceItem, FsaItem, LogEvent
 from gcs.session import announcements
-from gcs.session.effects import Effect, Emit, Record
+from gcs.session.effects import Emit, Record
 from gcs.session.requests import Asked
-from gcs.session.work import GiveVerdict, Log
+from gcs.session.work import GiveVerdict, Log, ToScreens, Work
 
 ASKED = Asked(ipc.Ask(3, "goto"))
 WRONG = (ConditionItem("battery_low", "CAUTION", "14 % are left"),)
 NOW_NS = 1_700_000_000_000_000_000
 
 
-def told(effects: list[Effect]) -> tuple[list[str], list[str]]:
+def told(effects: Sequence[Work]) -> tuple[list[str], list[str]]:
     """The operator's lines, and the messages of the JSON topics."""
     lines, messages, topics = [], [], (GateJson(), VehicleJson())
     for effect in effects:
-        if isinstance(effect, Emit):
+        if isinstance(effect, Emit | ToScreens):
             lines.append(ipc.encode(effect.event).decode().rstrip("\n"))
         elif isinstance(effect, Record):
             made = [out for part in topics for out in part.handle(effect.item, NOW_NS)]
@@ -141,7 +142,7 @@ def test_the_fence_is_one_list_of_zones_for_both() -> None:
     assert isinstance(record.item, FenceItem)
     assert record.item.origin == (47.4, 8.5, 488.0)
     assert (record.item.margin_h_m, record.item.margin_v_m) == (2.0, 0.3)  # default.toml
-    assert isinstance(emit, Emit)
+    assert isinstance(emit, ToScreens)
     assert isinstance(emit.event, ipc.Fences)
     assert emit.event.zones is record.item.zones
     assert ipc.encode(emit.event) == (

@@ -46,6 +46,7 @@ commands = st.one_of(
     st.builds(ipc.Renew, st.integers()),
     st.builds(ipc.Note, st.text()),
     st.builds(ipc.Preflight, st.integers(), st.integers(-1, 3)),
+    st.builds(ipc.Show, st.integers(-1, 3)),
     st.builds(ipc.Join, st.text()),
     st.builds(
         ipc.Stream,
@@ -101,6 +102,7 @@ def test_every_kind_of_command_is_tried() -> None:
         ipc.Renew,
         ipc.Note,
         ipc.Preflight,
+        ipc.Show,
         ipc.Join,
         ipc.Pending,
         ipc.WatchTopics,

@@ -30,19 +30,20 @@ class Scene:
     losses: SequenceTracker = field(default_factory=SequenceTracker)
 
     def shot(self) -> ipc.Snapshot:
-        return snapshot(
-            self.gate,
-            self.telemetry,
+        of_station = ipc.Snapshot(
             NOW_NS,
-            mission_total=7,
-            losses=self.losses,
+            "NO_VEHICLE",
+            "NONE",
+            "NOMINAL",
+            [],
+            0.0,
             log_path="logs/a.mcap",
             recording=True,
-            recorded_bytes=1_500_000,
+            recorded_mb=1.5,
             vehicles=["1/1 px4 quadrotor"],
-            listening=False,
             in_control=ipc.OperatorInfo(2, "gcs attach, pid 7"),
         )
+        return snapshot(of_station, self.gate, self.telemetry, 7, self.losses)
 
 
 def reported() -> Telemetry:
