@@ -30,7 +30,8 @@ class StationConfig(msgspec.Struct, frozen=True):
     endpoints: list[str] = []  # empty with `sim`: a private free port
     clients: list[str] = []  # ports where MAVLink clients reach the vehicle through the gate
     bridge: bool = False  # `gcs bridge`: the operator who started it only looks
-    fleet: bool = False  # every vehicle that is heard is flown, and is named in each request
+    fleet: bool | msgspec.UnsetType = msgspec.UNSET  # every vehicle that is heard is flown, and
+    #   is named in each request; where it is not said, it is in no record either
     sim: SimConfig | None = None
     policy_path: str = ""  # empty = the built-in default
     vehicle_key_path: str = ""  # file with the MAVLink 2 signing key of the vehicle's links
@@ -60,7 +61,7 @@ class StationConfig(msgspec.Struct, frozen=True):
     def several(self) -> bool:
         """Whether every vehicle that is met is flown, and not one alone."""
         one = self.sim is not None and self.sim.count == 1
-        return (self.bridge or self.fleet) and not one and not self.target_sysid
+        return (self.bridge or self.fleet is True) and not one and not self.target_sysid
 
 
 class Wanted(msgspec.Struct, frozen=True):

@@ -230,7 +230,7 @@ class Vehicles:
 
         Once a request was for the only one, whoever comes later changes nothing, as with `Roster`.
         """
-        if not self._config.fleet or self._first_is_meant:
+        if self._config.fleet is not True or self._first_is_meant:
             return None
         if len(self._all) == 1:
             self._first_is_meant = asked and self.first.telemetry is not None

@@ -12,6 +12,7 @@ from textual.events import Event, Key, Paste
 
 from gcs import ipc, request_words
 from gcs.operator.client import Listened
+from gcs.tui import fleet
 from gcs.tui.command_line import CommandLine
 from gcs.tui.keyboard import DIRECTIONS, PendingGoal, VelocityKeys
 from gcs.tui.keymap import Keymap
@@ -153,7 +154,11 @@ class KeyActions(LeavingApp):
     def _request(self, request: ipc.Ask) -> int:
         """Send it under a number of its own, which is returned.  Of a file the name is shown."""
         shown = msgspec.structs.replace(request, path=Path(request.path).name)
-        numbered = self.scene.ask(request, request_words.label(shown))
+        every = request.vehicle == ipc.EVERY
+        label = ("" if every else self.scene.of_several) + request_words.label(shown)
+        if not every:
+            request = msgspec.structs.replace(request, vehicle=self._connection.sysid)
+        numbered = self.scene.ask(request, label)
         if not self._connection.send(numbered):
             self.scene.answer = Answer(f"{request.word}: not sent, the link is down", REFUSED)
         return numbered.id
@@ -171,6 +176,10 @@ class KeyActions(LeavingApp):
 
     def action_request(self, word: str) -> None:
         self._request(ipc.Ask(0, word))
+
+    def action_stop_all(self) -> None:
+        """Every vehicle, whichever is shown."""
+        self._request(ipc.Ask(0, "abort", vehicle=ipc.EVERY))
 
     def action_send(self) -> None:
         self._request(self.scene.pending.ask)
@@ -207,6 +216,22 @@ class KeyActions(LeavingApp):
         self._request(ipc.Ask(0, "fence", on=not self.scene.fence_on))
 
     # ------------------------------------------------------------------- keys: station
+
+    def action_next_vehicle(self) -> None:
+        seen = self.scene.snapshot
+        number = 0 if seen is None else fleet.next_of(seen)
+        if number:
+            self.choose(number)
+        else:
+            self.scene.answer = Answer("no other vehicle is heard", "")
+
+    def choose(self, sysid: int) -> None:
+        """Show that vehicle: from now on keys and words are for that one."""
+        if self.scene.velocity is not None:
+            self.action_velocity()  # a stream of keys is for the vehicle that was shown
+        self._then.clear()
+        self.scene.choose(sysid)
+        self._connection.choose(sysid)
 
     def action_acknowledge(self) -> None:
         if not self.scene.alarms.acknowledge():

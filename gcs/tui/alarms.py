@@ -32,6 +32,8 @@ LINK_LOST: Final = "LINK LOST"
 POSITION_OLD: Final = "POSITION OLD"
 CONTROL_LOST: Final = "CONTROL LOST"
 STATION_LOST: Final = "STATION LOST"
+OF_ALL: Final = frozenset({NAMES[Condition.RECORDER_FAILED], NAMES[Condition.OTHER_STATION]})
+"""No vehicle's own."""
 AT_ONCE: Final = frozenset({CONTROL_LOST})
 """Events, not states: over as soon as they are raised, and still to be acknowledged."""
 
@@ -63,6 +65,10 @@ class Alarms:
     _now_ns: int = 0
     _new: bool = False
     _rung_s: float = -math.inf
+    _states: dict[int, str] = field(default_factory=dict)
+    """Of the other vehicles, as they were told last."""
+    _sysid: int = 0
+    """Of the vehicle that is shown, where there are others."""
 
     def told(self, event: ipc.Event, *, lost: bool) -> None:
         """`lost`: a vehicle was heard and is not heard any more."""
@@ -70,10 +76,20 @@ class Alarms:
             case ipc.Snapshot():
                 self._now_ns = event.time_ns
                 self._stand(_standing(event, lost=lost))
+                self._sysid = event.sysid if event.others else 0
+                self._look_at_others(event.others)
             case ipc.StateEvent(before=before, after=State.EXTERNAL.name) if before in OURS:
-                self._raise(CONTROL_LOST)
+                self._raise(_numbered(self._sysid, CONTROL_LOST) if self._sysid else CONTROL_LOST)
             case _:
                 pass
+
+    def _look_at_others(self, others: list[ipc.OtherVehicle]) -> None:
+        """Of a vehicle that is not shown no change of state is told, but its state is."""
+        for each in others:
+            before = self._states.get(each.vehicle)
+            if each.state == State.EXTERNAL.name and before in OURS:
+                self._raise(f"{each.vehicle}: {CONTROL_LOST}")
+        self._states = {each.vehicle: each.state for each in others}
 
     def station_lost(self) -> None:
         self._raise(STATION_LOST)
@@ -93,7 +109,7 @@ class Alarms:
 
     def rings(self, now_s: float) -> bool:
         """Whether the bell is to ring now."""
-        waits = any(each.standing or each.name in AT_ONCE for each in self.open)
+        waits = any(each.standing or _at_once(each.name) for each in self.open)
         due = self._new or (waits and now_s - self._rung_s >= BELL_AGAIN_S)
         self._new = False
         if due:
@@ -105,7 +121,7 @@ class Alarms:
         return " · ".join(self._words_of(each) for each in self.open)
 
     def _words_of(self, alarm: Alarm) -> str:
-        if alarm.name in AT_ONCE or alarm.name == STATION_LOST:
+        if _at_once(alarm.name) or alarm.name == STATION_LOST:
             return alarm.name
         if not alarm.standing:
             return f"{alarm.name} (over)"
@@ -129,6 +145,27 @@ class Alarms:
 
 
 def _standing(seen: ipc.Snapshot, *, lost: bool) -> list[str]:
+    """Of several vehicles each with its number; the record is that of all."""
+    if not seen.others:
+        return _of_shown(seen, lost=lost)
+    names = [_numbered(seen.sysid, name) for name in _of_shown(seen, lost=lost)]
+    for each in seen.others:
+        gone = each.state == State.NO_VEHICLE.name
+        old = [POSITION_OLD] if each.state == State.STALE.name and each.armed else []
+        told = [*([LINK_LOST] if gone else old), *(NAMES[c] for c in NAMES if c in each.conditions)]
+        names += [_numbered(each.vehicle, name) for name in told]
+    return list(dict.fromkeys(names))
+
+
+def _at_once(name: str) -> bool:
+    return name.partition(": ")[2] in AT_ONCE or name in AT_ONCE
+
+
+def _numbered(sysid: int, name: str) -> str:
+    return name if name in OF_ALL else f"{sysid}: {name}"
+
+
+def _of_shown(seen: ipc.Snapshot, *, lost: bool) -> list[str]:
     """Nothing is known of a vehicle that was never heard; of one that is lost only that."""
     names = [NAMES[each] for each in NAMES if each in seen.conditions]
     if not seen.vehicle:

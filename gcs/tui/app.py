@@ -84,10 +84,12 @@ class FlyApp(LineActions):
         timeout_s: float | None = None,
         keymap: Keymap = DEFAULT,
         ascii_only: bool = False,
+        vehicle: int = 0,
     ) -> None:
         """`events`: those that came already.  `mission_path`: what the mission key uploads first.
         `timeout_s`: leave if no vehicle is heard within it; None waits for ever.
-        `ascii_only`: draw without any other sign, as where the terminal is not UTF-8."""
+        `ascii_only`: draw without any other sign, as where the terminal is not UTF-8.  `vehicle`:
+        the system id of the one of several that is shown at first; 0: the first that was heard."""
         super().__init__(connection, mission_path, keymap)
         self._bindings = BindingsMap(
             Binding(name, f"press({name!r})", show=False, priority=True) for name in self.bound
@@ -95,6 +97,7 @@ class FlyApp(LineActions):
         self._timeout_s = timeout_s
         self._first_events = events
         self._subscribed = ""
+        self._vehicle = vehicle
         self._ascii = ascii_only or needed()
 
     # ------------------------------------------------------------------------- screen
@@ -130,7 +133,7 @@ class FlyApp(LineActions):
         before = Panel(lambda _c, _r: preflight_page.draw(scene), "preflight", "before a take-off")
         before.border_subtitle = page.border_subtitle
         yield before
-        yield Panel(lambda _c, _r: frame_panels.question(), "question")
+        yield Panel(lambda _c, _r: frame_panels.question(scene), "question")
         yield Panel(lambda _c, _r: frame_panels.farewell(scene), "farewell")
 
     def _footer(self, line: CommandLine, columns: int) -> RenderableType:
@@ -231,6 +234,9 @@ class FlyApp(LineActions):
                 if hover_enu is not None:
                     self.scene.pending = self.scene.pending.at(hover_enu)
                 self._meet(event)
+                if event.others and event.vehicle and not self._connection.sysid:
+                    # From now on each request names the one that is shown.
+                    self.choose(self._vehicle or event.sysid)
             case _:
                 pass
 

@@ -14,7 +14,7 @@ _BRAILLE: Final = {
 }
 SIGNS: Final = {
     **_BRAILLE,
-    **str.maketrans("↑↗→↘↓↙←↖⌂◇◉◆✗●◀▔┤├─│╌┄█░°·…±▲⇧≥✓▶■", "^/>\\v/<\\Ho@oX*<~++-|::#.'-~~!^>+>#"),
+    **str.maketrans("↑↗→↘↓↙←↖⌂◇◉○◆✗●◀▔┤├─│╌┄█░°·…±▲⇧≥✓▶■", "^/>\\v/<\\Ho@OoX*<~++-|::#.'-~~!^>+>#"),
 }
 """Each sign of ours, and the letter that stands for it."""
 

@@ -14,6 +14,7 @@ from textual.app import App
 
 from gcs import ipc
 from gcs.exit_codes import ExitCode
+from gcs.operator.chosen_vehicle import ListenedVehicle
 from gcs.operator.client import Listened
 from gcs.tui.hang_up import on_hang_up
 from gcs.tui.result import SessionResult
@@ -30,7 +31,7 @@ class LeavingApp(App[None]):
 
     def __init__(self, connection: Listened) -> None:
         super().__init__()
-        self._connection = connection
+        self._connection = ListenedVehicle(connection)
         self.scene = Scene()
         self.interrupted = False
         self._leaving = False

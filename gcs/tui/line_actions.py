@@ -65,6 +65,8 @@ class LineActions(KeyActions):
             case request_words.FlyVelocity(v_enu, seconds):
                 self.scene.velocity = VelocityKeys(v_enu, monotonic() + seconds, typed=True)
                 self.action_request("stream_begin")
+            case request_words.ChooseVehicle(sysid):
+                self._choose_typed(sysid)
             case request_words.ShowState():
                 seen, number = self.scene.snapshot, self.scene.talk.number
                 self._log_line(event_text.state_line(seen, number), look.PLAIN)
@@ -78,6 +80,16 @@ class LineActions(KeyActions):
             case _:
                 told = f"{text}: is for --plain and scripts: here a line does not wait"
                 self.scene.answer = Answer(told, REFUSED)
+
+    def _choose_typed(self, sysid: int) -> None:
+        seen = self.scene.snapshot
+        there = [] if seen is None else [seen.sysid, *(each.vehicle for each in seen.others)]
+        if sysid not in there:
+            heard = ", ".join(map(str, sorted(there))) or "none"
+            told = f"vehicle {sysid}: not heard; there are: {heard}"
+            self.scene.answer = Answer(told, REFUSED)
+        elif sysid != there[0]:
+            self.choose(sysid)
 
     def _log_line(self, text: str, style: str, level: int = 4, time_ns: int | None = None) -> None:
         for panel in self.query(LogPanel):  # none once the screen has been given back

@@ -11,11 +11,13 @@ from typing import NamedTuple
 from msgspec import structs
 
 from gcs import ipc, request_words
-from gcs.gate.states import LandedState, State
+from gcs.gate.states import State
 from gcs.operator import control_text, event_text
 from gcs.operator.conversation import Conversation, TrackedRequest
 from gcs.operator.standstill import Standstill
+from gcs.tui import fleet
 from gcs.tui.alarms import Alarms
+from gcs.tui.fleet import Mind, Minds
 from gcs.tui.flight_numbers import FlightNumbers
 from gcs.tui.keyboard import PendingGoal, VelocityKeys
 from gcs.tui.verdict_ahead import TypedLine, VerdictAhead
@@ -78,6 +80,7 @@ class Scene:
     numbers: FlightNumbers = field(default_factory=FlightNumbers)
     wind: Wind | None = None
     fence_on: bool = True
+    minds: Minds = field(default_factory=Minds)
     _standstill: Standstill = field(default_factory=Standstill)
     _on_board: list[ipc.FenceShape] = field(default_factory=list)
     _up: bool = False
@@ -121,7 +124,7 @@ class Scene:
         """In the air, and leaving has it held: this operator commands it, or has started the
         station, which ends with it."""
         seen = self.snapshot
-        if seen is None or self.lost or not seen.armed or seen.landed == LandedState.ON_GROUND.name:
+        if seen is None or not fleet.flying(seen):
             return False
         commands = seen.in_control is not None and seen.in_control.client == self.talk.number
         return commands or self.talk.number == 1  # `Hello.client`: who has started the station
@@ -129,6 +132,21 @@ class Scene:
     def ask(self, request: ipc.Ask, label: str = "") -> ipc.Ask:
         """What is to be sent: the request with its number, kept for its answers."""
         return self.talk.ask(request, label).sent
+
+    def choose(self, sysid: int) -> None:
+        """Show another vehicle: what is drawn of it comes, and what was asked of the one before
+        goes on without being followed here."""
+        before = 0 if self.snapshot is None else self.snapshot.sysid
+        mind = Mind(self.pending, self.pending_set, self.fence_on, self._up)
+        mind = self.minds.swap(before, mind, sysid)
+        self.pending, self.pending_set, self.fence_on, self._up = mind
+        self.talk.snapshot = self.last_move = self.progress = self.wind = self.velocity = None
+        self.ahead, self.typed_ahead = VerdictAhead(), VerdictAhead()
+        self.zones, self.own_zones, self.pan_en = [], [], (0.0, 0.0)
+        self.mission, self.mission_begun = ipc.MissionPath([]), False
+        self.mission_said, self.numbers = Answer(), FlightNumbers()
+        self._standstill = Standstill()
+        self.trail.clear()
 
     def take_hover_point(self) -> ipc.Vec3 | None:
         """Once after a take-off: where it hovers, if the operator has not set a goal yet."""
@@ -228,7 +246,16 @@ class Scene:
         taken = event.word == "station_take" and event.ended == COMPLETE
         return taken and self.answer.kind == TAKEN_OVER
 
+    @property
+    def of_several(self) -> str:
+        """What is asked, and answered, begins so where there are others: whose it is."""
+        seen = self.snapshot
+        return f"vehicle {seen.sysid}: " if seen is not None and seen.others else ""
+
     def _note_completed(self, request: ipc.Ask) -> None:
+        seen = self.snapshot
+        if seen is not None and request.vehicle not in (0, seen.sysid):
+            return  # it was asked while another vehicle was shown
         if request.word == "fence":
             self.fence_on = request.on
         elif request.word == "takeoff":

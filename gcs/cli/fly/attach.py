@@ -13,14 +13,14 @@ Examples:
   gcs attach
   gcs attach --take
   echo abort | gcs attach --plain
-  gcs attach --plain --vehicle 2
+  gcs attach --vehicle 2
 
 Without --take it looks on, and may abort, hold, land and return home; everything else is refused
 with the name of the operator who is in control. `station take` takes over later. Leaving it does
 not end the station.
 
-Of a bridge with several vehicles the screen shows the first that was heard; with --plain, --vehicle
-chooses one.
+Of several vehicles it is for the first that was heard, or for that of --vehicle; the key Tab, or
+the words `vehicle 2`, choose another one.
 """
 
 
@@ -31,7 +31,7 @@ chooses one.
     "--vehicle",
     type=SYSID,
     metavar="SYSID",
-    help="--plain: this vehicle of a bridge, by its MAVLink system id.  [default: the first heard]",
+    help="This one of several vehicles, by its MAVLink system id.  [default: the first heard]",
 )
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")
 @click.option("--strict", is_flag=True, help="--plain: exit 6 or 8 when not all was completed.")
@@ -48,12 +48,12 @@ def attach(
     ascii_only: bool,
 ) -> None:
     """Open a second screen on a running station."""
-    from gcs.cli.running import joined_station, the_station
+    from gcs.cli.running import joined_station, refuse_differences, the_station
+    from gcs.config import Wanted
     from gcs.ipc import Ask
 
-    if vehicle is not None and not plain:
-        raise click.UsageError("--vehicle goes with --plain: the screen shows the first vehicle")
     found = the_station(links)
+    refuse_differences(found, Wanted(vehicle=vehicle))
     if not plain:
         from gcs.cli.fly.fly import needs_a_terminal
 
@@ -74,6 +74,6 @@ def attach(
     from gcs.tui.result import print_result, until_hello
 
     events, keymap = until_hello(station), configured_keymap()
-    app = FlyApp(station, events, keymap=keymap, ascii_only=ascii_only)
+    app = FlyApp(station, events, keymap=keymap, ascii_only=ascii_only, vehicle=vehicle or 0)
     app.run()
     ctx.exit(print_result(app.result, lambda line: click.echo(line, err=True)))

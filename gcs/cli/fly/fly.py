@@ -33,9 +33,13 @@ Examples:
 \b
   gcs fly --sim
   gcs fly --link udpin://127.0.0.1:14550 --policy lab
+  gcs fly --sim 3
   gcs fly --sim --live
   gcs fly --sim --client udpout://127.0.0.1:14550
   printf 'arm\\ntakeoff 2\\ngoto 3 0 2\\nland\\n' | gcs fly --sim --plain
+
+Of several vehicles each request is for one: the key Tab, or the words `vehicle 2`, say which. Space
+and `abort` stop that one, the key A and `abort all` every one that flies.
 
 With --plain, answers go to standard output and the log to standard error; `help` lists the words.
 A line is done when the one before has its ending or its refusal; a line that ends in & is not
@@ -132,9 +136,7 @@ def fly(
         vehicle=vehicle,
     )
     rule_path = verifier or msgspec.UNSET
-    config = msgspec.structs.replace(
-        config, keep=keep, rule_path=rule_path, fleet=vehicle is None
-    )
+    config = msgspec.structs.replace(config, keep=keep, rule_path=rule_path, fleet=vehicle is None)
     if plain and mission:
         raise click.UsageError("--mission is for the keyboard; with --plain type: mission fly FILE")
     mission_path = _mission(mission) if mission else ""

@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from gcs.operator.control_text import operator_words
-from gcs.tui import look
+from gcs.tui import fleet, look
 from gcs.tui.command_line import CommandLine
 from gcs.tui.keymap import DEFAULT, Keymap
 from gcs.tui.scene import Scene
@@ -25,6 +25,10 @@ def header(scene: Scene, columns: int) -> Text:
     if seen is None:
         left.append(" starting the link …", look.DIM)
         return left
+    for mark in fleet.marks(seen):
+        style = look.BAD if mark.lost else look.SEVERITY.get(mark.severity, look.BAD)
+        number = f"[{mark.sysid}]" if mark.shown else f" {mark.sysid} "
+        left.append(number, f"bold reverse {style}" if mark.shown else style)
     left.append(f" {seen.vehicle or 'no vehicle'}  ", look.PLAIN)
     left.append(f" {seen.state} ", f"reverse {look.SEVERITY.get(seen.severity, look.BAD)}")
     if scene.lost:
@@ -66,11 +70,16 @@ def typing(line: CommandLine, columns: int) -> Text:
     return Text.assemble((f" {offers}"[:columns], look.PENDING), "\n", out)
 
 
-def question() -> Text:
+def question(scene: Scene) -> Text:
     """Before the operator of a vehicle in the air leaves it."""
+    count = 1 if scene.snapshot is None else fleet.flying(scene.snapshot)
+    what, leave = "The vehicle is", "Leave it?  It is told to hold, and nobody flies it then."
+    if count > 1:
+        what = f"{count} vehicles are"
+        leave = "Leave them?  They are told to hold, and nobody flies them then."
     return Text.assemble(
-        ("The vehicle is in the air.\n\n", "bold"),
-        "Leave it?  It is told to hold, and nobody flies it then.\n\n",
+        (f"{what} in the air.\n\n", "bold"),
+        f"{leave}\n\n",
         ("q or y", look.PENDING), " leaves    ",
         ("any other key", look.PENDING), " stays    ",
         ("Space", look.BAD), " ABORT",

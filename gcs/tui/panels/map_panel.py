@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from rich.text import Text
 
-from gcs.tui import look
+from gcs import ipc
+from gcs.tui import fleet, look
 from gcs.tui.braille import Canvas
 from gcs.tui.scene import Scene
 from gcs.tui.verdict_ahead import Ahead
@@ -16,6 +18,9 @@ ARROWS = "↑↗→↘↓↙←↖"
 HOME, PENDING, ACTIVE = "⌂", "◇", "◉"
 OTHERS = "◆"
 """What the operator in control has in mind, for those who look on."""
+OTHER_GOAL = "○"
+OTHERS_M = 200.0
+"""How far from the vehicle that is shown another one may be, so that the map has room for both."""
 REFUSED = "✗"
 """The pending goal that the gate would refuse."""
 OFF_EVERY = 5
@@ -44,7 +49,13 @@ def draw(scene: Scene, columns: int, rows: int) -> Text:
     canvas.path([view.dots(e, n) for e, n, _ in scene.trail], look.TRAIL)
     _markers(canvas, view, scene)
     _scale(canvas, view)
-    legend = _legend(columns, mission=bool(scene.mission.points_enu), own=bool(scene.own_zones))
+    seen = scene.snapshot
+    legend = _legend(
+        columns,
+        mission=bool(scene.mission.points_enu),
+        own=bool(scene.own_zones),
+        others=seen is not None and bool(seen.others),
+    )
     return Text.assemble(canvas.render(), "\n", legend, end="", no_wrap=True)
 
 
@@ -71,12 +82,20 @@ def view_of(scene: Scene, columns: int, rows: int) -> View:
     if seen is not None:
         known = (seen.pos_enu, scene.active_enu, seen.home_enu)
         points += [point[:2] for point in known if point is not None]
+        points += _near(seen)
         centre = seen.home_enu[:2] if seen.home_enu is not None else centre
     points += _small_fence(scene)
     points += [point[:2] for point in scene.mission.points_enu]
     fitting = fit(centre, points, width, height, scene.zoom)
     middle_en = (centre[0] + scene.pan_en[0], centre[1] + scene.pan_en[1])
     return replace(fitting, centre_en=middle_en)
+
+
+def _near(seen: ipc.Snapshot) -> list[tuple[float, float]]:
+    """Where the other vehicles are that are not far away."""
+    here = seen.pos_enu
+    others = [each.pos_enu for each in seen.others if each.pos_enu is not None]
+    return [] if here is None else [p[:2] for p in others if math.dist(p, here) <= OTHERS_M]
 
 
 def _small_fence(scene: Scene) -> list[tuple[float, float]]:
@@ -112,7 +131,11 @@ def _markers(canvas: Canvas, view: View, scene: Scene) -> None:
         if seen is not None and seen.pos_enu is not None:
             canvas.line(view.dots(*seen.pos_enu[:2]), goal, look.ACTIVE, every=3)
         canvas.glyph(*goal, ACTIVE, look.ACTIVE)
-    if scene.other_goal is not None and not scene.in_control:
+    if seen is not None:
+        for other in seen.others:
+            _other(canvas, view, other)
+    of_shown = seen is not None and (not seen.others or _is_of(scene.other_goal, seen.sysid))
+    if scene.other_goal is not None and of_shown and not scene.in_control:
         canvas.glyph(*view.dots(*scene.other_goal.goal_enu[:2]), OTHERS, look.PENDING)
     goal_enu, ahead = scene.pending.goal_enu, scene.ahead.of(scene.pending.ask)
     typed = scene.typed
@@ -126,6 +149,23 @@ def _markers(canvas: Canvas, view: View, scene: Scene) -> None:
         canvas.glyph(*view.dots(*seen.pos_enu[:2]), char, style)
 
 
+def _is_of(goal: ipc.OperatorGoal | None, sysid: int) -> bool:
+    return goal is not None and goal.vehicle == sysid
+
+
+def _other(canvas: Canvas, view: View, other: ipc.OtherVehicle) -> None:
+    """Another vehicle by its number, and the goal that it flies to."""
+    if other.pos_enu is None:
+        return
+    style = look.BAD if fleet.too_close(other) else look.OTHER
+    place = view.dots(*other.pos_enu[:2])
+    if other.goal_enu is not None and other.goal_enu != other.pos_enu:
+        goal = view.dots(*other.goal_enu[:2])
+        canvas.line(place, goal, style, every=4)
+        canvas.glyph(*goal, OTHER_GOAL, style)
+    canvas.glyph(*place, str(other.vehicle), style)
+
+
 def _scale(canvas: Canvas, view: View) -> None:
     length_m = nice_length(view.half_width_m / 2)
     cells = max(2, round(length_m / view.m_per_dot / 2))
@@ -135,9 +175,10 @@ def _scale(canvas: Canvas, view: View) -> None:
     canvas.text(canvas.columns - 1, canvas.rows // 2, "E", look.DIM)
 
 
-def _legend(columns: int, *, mission: bool, own: bool) -> Text:
+def _legend(columns: int, *, mission: bool, own: bool, others: bool) -> Text:
     parts = (
         ("↑", look.VEHICLE, "vehicle"),
+        *([("1", look.OTHER, "others")] if others else []),
         (PENDING, look.PENDING, "pending"),
         (ACTIVE, look.ACTIVE, "active"),
         (HOME, look.HOME, "home"),

@@ -393,3 +393,22 @@ def test_a_strict_script_ends_with_1_where_something_fails() -> None:
         session = Session("preflight\n", PlainConfig(strict=strict), rows=[low])
         assert session.exit_code == code
         assert session.out[-1] == "preflight: fails: battery; caution: failsafes"
+
+
+def test_what_follows_a_choice_is_for_that_vehicle_and_a_stop_of_all_for_every_one() -> None:
+    session = Session("arm\nvehicle 2\narm\nland all\nvehicle 300\n")
+    asked = [command for command in session.connection.sent if isinstance(command, ipc.Ask)]
+    assert [(each.word, each.vehicle) for each in asked] == [
+        ("arm", 0),
+        ("arm", 2),
+        ("land", ipc.EVERY),
+    ]
+    assert ipc.Show(2) in session.connection.sent
+    assert any(line.startswith("vehicle 2: GROUNDED") for line in session.out)
+    assert any("from 1 to 255, got 300" in line for line in session.err)
+
+
+def test_an_abort_that_overtakes_a_choice_is_for_every_vehicle() -> None:
+    session = Session("arm\nvehicle 2\ngoto 1 0 2\nabort\n")
+    asked = [command for command in session.connection.sent if isinstance(command, ipc.Ask)]
+    assert [(each.word, each.vehicle) for each in asked] == [("abort", ipc.EVERY)]

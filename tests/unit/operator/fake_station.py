@@ -314,7 +314,7 @@ class FakeStation:
             recording=True,
             recorded_mb=1.2,
             in_control=self.in_control,
-            others=self.others,
+            others=[each for each in self.others if each.vehicle != self.shown],
         )
 
 

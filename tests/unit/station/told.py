@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, TypeVar
 from gcs import ipc
 from gcs.report import FrameItem, FramesItem, RecordItem
 from gcs.session.effects import Effect, Emit, Finish, ReadFile, Record, WriteFile
-from gcs.session.work import TellOperator
+from gcs.session.work import TellOperator, ToScreens
 
 E = TypeVar("E")
 Told: TypeAlias = Iterable[object]
@@ -22,7 +22,9 @@ INFO, WARNING, ERROR, FATAL = 2, 3, 4, 5
 
 def events(effects: Told, kind: type[E]) -> list[E]:
     """What the operator's screen is told, of one kind."""
-    told = (effect.event for effect in effects if isinstance(effect, Emit | TellOperator))
+    told = (
+        effect.event for effect in effects if isinstance(effect, Emit | TellOperator | ToScreens)
+    )
     return [event for event in told if isinstance(event, kind)]
 
 

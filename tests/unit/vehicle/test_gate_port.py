@@ -168,7 +168,7 @@ def test_the_fence_is_shown_and_recorded_wherever_it_is_placed() -> None:
     port, telemetry = GatePort(DEFAULT, 0), vehicle()
     telemetry.home_ned, telemetry.origin = (0.0, 0.0, 0.0), HOME
     kinds = [type(item).__name__ for item in port.place_fence(telemetry)]
-    assert sorted(kinds) == ["GateInput", "Record", "ToScreens"]
+    assert sorted(kinds) == ["GateInput", "Record", "Record", "ToScreens"]
     assert placed(port, telemetry).verifier.autopilot == "px4"
 
 
