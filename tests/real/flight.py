@@ -13,6 +13,7 @@ from tests.real.rows import HEIGHT_M, Row
 from tests.real.truth import Vector
 
 POLICY = """name = "real"
+retarget = "{retarget}"
 [[fence]]
 name = "yard"
 kind = "circle"
@@ -62,8 +63,11 @@ class Flight:
     # -- who flies ----------------------------------------------------------------------------
 
     def policy(self, row: Row) -> Path:
-        path = self.folder / f"{row.radius_m:g}_{row.ceiling_m:g}.toml"
-        path.write_text(POLICY.format(radius=row.radius_m, ceiling=row.ceiling_m))
+        retarget = row.trouble if row.trouble == "replace" else "clients"
+        path = self.folder / f"{row.radius_m:g}_{row.ceiling_m:g}_{retarget}.toml"
+        path.write_text(
+            POLICY.format(radius=row.radius_m, ceiling=row.ceiling_m, retarget=retarget)
+        )
         return path
 
     def library(self, row: Row) -> Library:
@@ -93,6 +97,10 @@ class Flight:
     def one_shot(self, row: Row) -> OneShot:
         self.leave()
         return OneShot(self.policy(row), self.folder)
+
+    def joined(self, row: Row) -> OneShot:
+        """Through the library's own station, of which it takes control."""
+        return OneShot(self.policy(row), self.folder, "--take")
 
     def bridge(self, row: Row) -> Bridge:
         self.leave()

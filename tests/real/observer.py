@@ -83,6 +83,34 @@ class Observer(Link):
         home = self.home_truth
         return (position[0] - home[0], position[1] - home[1], position[2] - home[2])
 
+    def get(self, name: str) -> float | None:
+        """A parameter of the vehicle, as it tells it now."""
+        self.mavlink.messages.pop("PARAM_VALUE", None)
+        for _ in range(5):
+            self.mavlink.mav.param_request_read_send(1, 1, name.encode(), -1)
+            self.wait(lambda: self._told(name) is not None, 1.0)
+            if (told := self._told(name)) is not None:
+                return told
+        return None
+
+    def _told(self, name: str) -> float | None:
+        told = self.mavlink.messages.get("PARAM_VALUE")
+        if told is None or told.param_id != name:
+            return None
+        if self.kind is PX4 and told.param_type == 6:  # the bytes of an integer
+            return float(struct.unpack("<i", struct.pack("<f", told.param_value))[0])
+        return float(told.param_value)
+
+    def on_map(self, from_home: Vector) -> tuple[float, float]:
+        """Latitude and longitude of a place."""
+        assert self.truth.origin is not None
+        assert self.home_truth is not None
+        lat0, lon0, _ = self.truth.origin
+        metres = math.radians(1.0) * RADIUS_M
+        lat = lat0 + (from_home[1] + self.home_truth[1]) / metres
+        lon = lon0 + (from_home[0] + self.home_truth[0]) / metres / math.cos(math.radians(lat0))
+        return lat, lon
+
     def wait(self, condition: Callable[[], bool], seconds: float) -> bool:
         end = time.monotonic() + seconds
         while not condition():
@@ -117,12 +145,7 @@ class Observer(Link):
 
     def fly_to(self, from_home: Vector, seconds: float = 60.0) -> bool:
         """Brings it there past the gate, as another station would, and lets it hold."""
-        assert self.truth.origin is not None
-        assert self.home_truth is not None
-        lat0, lon0, _ = self.truth.origin
-        metres = math.radians(1.0) * RADIUS_M
-        lat = lat0 + (from_home[1] + self.home_truth[1]) / metres
-        lon = lon0 + (from_home[0] + self.home_truth[0]) / metres / math.cos(math.radians(lat0))
+        lat, lon = self.on_map(from_home)
         if self.kind is not PX4:
             # A station that streams in GUIDED gives up control when it sees another mode, and
             # sees to it for a second or two that it is a hold.

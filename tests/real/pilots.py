@@ -75,17 +75,24 @@ class Library:
 class OneShot:
     """`gcs goto ...`: a station for each request, which ends with it."""
 
-    def __init__(self, policy: Path, folder: Path) -> None:
+    def __init__(self, policy: Path, folder: Path, *options: str) -> None:
         self._options = ["--link", LINK, "--policy", str(policy), "--log-dir", str(folder)]
+        self._options += options
+
+    def run(self, *words: str, options: bool = True) -> tuple[int, str]:
+        """Any command: its exit code, and what it says."""
+        asked = [*self._options, "--timeout", "60"] if options else []
+        options_at = words.index("--") if "--" in words else len(words)
+        command = [GCS, *words[:options_at], *asked, *words[options_at:]]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LEG_S + 90.0)
+        return done.returncode, done.stdout or done.stderr
 
     def ask(self, word: str, *arguments: float) -> str:
-        numbers = [f"{number:.3f}" for number in arguments]
-        command = [GCS, word, *self._options, "--timeout", "60", "--", *numbers]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LEG_S + 90.0)
-        told = " ".join((done.stdout + done.stderr).split())
-        if done.returncode == 0:
+        """A word with numbers, and what became of it."""
+        code, told = self.run(word, "--", *(f"{number:.8f}" for number in arguments))
+        if code == 0:
             return "complete"
-        return f"{'refused' if done.returncode in (5, 6) else 'not completed:'} {told}"
+        return f"{'refused' if code in (5, 6) else 'not completed:'} {' '.join(told.split())}"
 
     def goto(self, goal: Vector) -> str:
         return self.ask("goto", *goal)

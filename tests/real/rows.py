@@ -34,7 +34,7 @@ class Row:
     @property
     def name(self) -> str:
         words = [self.kind, self.word, self.by if self.by != "library" else ""]
-        if self.kind == "approach":
+        if self.kind in ("approach", "go"):
             words.append(
                 f"{self.leg_m:g} m {self.direction} to {self.goal_m:g} of {self.limit_m:g}"
             )
@@ -180,12 +180,54 @@ def cuts() -> list[Row]:
         if not speed or before_m > 35.0  # nearer, the gate has slowed it down
     ]  # fmt: skip
     through = replace(cut[1], kind="stranger", direction="S", when=0.0)
-    return [through, *cut[:4], *(replace(row, word="put") for row in cut)]
+    return [*cut[:4], through, *(replace(row, word="put") for row in cut)]
 
 
 def missions() -> list[Row]:
     figures = (("", 0.0), ("delay", 0.2), ("delay", 0.5), ("loss", 0.25))
     return [Row("mission", trouble=trouble, figure=figure) for trouble, figure in figures]
+
+
+def ways() -> list[Row]:
+    """Each other way to go than a goto: well inside, near the fence, and where it is refused."""
+    rows = []
+    for number, by in enumerate(("library", "one-shot")):
+        for turn, word in enumerate(("move", "forward", "goto-global")):
+            direction = EIGHT[(3 * number + turn) % 8]
+            for leg, goal in ((30.0, 40.0), (40.0, 57.0), (20.0, 59.5)):
+                rows.append(Row("go", by, direction, leg, goal, word=word))
+        rows += [
+            Row("go", by, "NE", 0.0, 40.0, word="heading", figure=90.0),
+            Row("go", by, "NE", 0.0, 40.0, word="heading", figure=-135.0),
+            Row("go", by, "W", 40.0, 57.0, word="speed", figure=2.0),
+            Row("go", by, "W", 40.0, 50.0, word="speed", figure=40.0, trouble="most"),
+            Row("go", by, "S", 20.0, 40.0, word="orbit", figure=10.0),
+            Row("go", by, "SE", 15.0, 52.0, word="orbit", figure=-8.0),
+            Row("go", by, "N", 30.0, 59.5, word="orbit", figure=10.0),
+        ]
+    return rows
+
+
+def amid() -> list[Row]:
+    """A goto while something else is under way: at speed, towards the fence."""
+    words = ("goto", "move", "heading", "orbit", "parameters", "download", "takeoff", "land", "rtl")
+    rows = [Row("amid", leg_m=60.0, goal_m=50.0, word=word, when=3.0) for word in words]
+    rows = [
+        replace(row, when=0.3) if row.word in ("heading", "parameters", "download") else row
+        for row in rows
+    ]
+    replaced = [replace(row, trouble="replace") for row in rows[:2]]
+    return [
+        *rows[:2],
+        *replaced,
+        replace(replaced[0], goal_m=57.0, leg_m=80.0, when=6.0),
+        *rows[2:],
+    ]
+
+
+def days() -> list[Row]:
+    words = ("log", "parameters", "fences", "preflight")  # the log is of one flight
+    return [Row("daily", "one-shot", word=word) for word in words]
 
 
 def smoke(kind: Kind) -> list[Row]:
@@ -214,4 +256,7 @@ def whole(kind: Kind, seed: int, count: int) -> list[list[Row]]:
         troubles,
         [*missions(), *hostile()],
         [Row("plans"), *cuts()],
+        ways(),
+        amid(),
+        days(),
     ]

@@ -19,6 +19,7 @@ class Sample:
     position_enu: Vector
     velocity_enu: Vector
     tilt_deg: float = 0.0
+    yaw_deg: float = 0.0  # of the nose, clockwise from north
 
     @property
     def speed_m_s(self) -> float:
@@ -39,12 +40,13 @@ class Truth:
                 self.clock_s = message.time_boot_ms / 1e3
                 return
             case "HIL_STATE_QUATERNION":
-                _, x, y, _ = message.attitude_quaternion
+                w, x, y, z = message.attitude_quaternion
+                yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
                 tilt = math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * (x * x + y * y))))
                 velocity = (message.vy / 100.0, message.vx / 100.0, -message.vz / 100.0)
                 place = (message.lat / 1e7, message.lon / 1e7, message.alt / 1e3)
             case "SIM_STATE":
-                tilt = math.acos(math.cos(message.roll) * math.cos(message.pitch))
+                tilt, yaw = math.acos(math.cos(message.roll) * math.cos(message.pitch)), message.yaw
                 velocity = (message.ve, message.vn, -message.vd)
                 place = (message.lat_int / 1e7, message.lon_int / 1e7, message.alt)
             case _:
@@ -52,7 +54,9 @@ class Truth:
         if self.origin is None:
             self.origin = place
         position = self.enu(*place)
-        self.samples.append(Sample(self.clock_s, position, velocity, math.degrees(tilt)))
+        self.samples.append(
+            Sample(self.clock_s, position, velocity, math.degrees(tilt), math.degrees(yaw))
+        )
 
     def enu(self, lat: float, lon: float, alt_m: float) -> Vector:
         assert self.origin is not None
