@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from math import atan2, cos, degrees, radians, sin
 
 import msgspec
 
 from gcs.flight_report.findings.limits import BAD, FAIR, HDOP_BAD, REJECTED
 from gcs.flight_report.flight import Flight, VehicleFlight
+from gcs.flight_report.sampled import WANTED
 from gcs.flight_report.series import Series
 
 MAX_MARKS = 40
@@ -23,6 +25,8 @@ class Line(msgspec.Struct):
     steps: bool = False
     dots: bool = False
     dashed: bool = False
+    column: int = -1
+    """Of the series; else its place among the lines."""
 
 
 class LimitLine(msgspec.Struct):
@@ -92,19 +96,7 @@ def _charts(vehicle: VehicleFlight) -> list[Chart]:
             Line("over ground", "m/s"),
             Line("climb", "m/s"),
         ),
-        _chart(
-            Chart("attitude", "Attitude", "roll to the right, pitch up"),
-            plots.attitude,
-            Line("roll", "°"),
-            Line("pitch", "°"),
-        ),
-        _turned(
-            _chart(
-                Chart("heading", "Heading", "clockwise from north", circle=True),
-                plots.heading,
-                Line("heading", "°", dots=True),
-            )
-        ),
+        *_sampled(vehicle),
         _chart(
             Chart("battery", "Battery", "voltage; what is left, and the current", right_to=100.0),
             plots.battery,
@@ -164,11 +156,48 @@ def _charts(vehicle: VehicleFlight) -> list[Chart]:
     ]
 
 
+def _sampled(vehicle: VehicleFlight) -> Iterator[Chart]:
+    """What is measured beside what was wanted of it; motors, sticks, wind."""
+    series = {plot: sampled.series for plot, sampled in vehicle.plots.sampled.items()}
+    place = Chart("place", "Place", "of the local origin; dashed: where it was to be")
+    pairs = (("east", 0), ("north", 1), ("east wanted", 3), ("north wanted", 4))
+    yield _chart(place, series["place"], *_wanted("m", pairs))
+    for number, (axis, about) in enumerate(
+        (("roll", "to the right"), ("pitch", "up"), ("yaw", "clockwise from north"))
+    ):
+        columns = ((axis, number), (f"{axis} wanted", number + WANTED))
+        turns = axis == "yaw"
+        chart = Chart(axis, axis.capitalize(), f"{about}; dashed: what was wanted", circle=turns)
+        drawn = _chart(chart, series["attitude"], *_wanted("°", columns, dots=turns))
+        yield _turned(drawn) if turns else drawn
+        rate = Chart(f"{axis}-rate", f"{axis.capitalize()} rate", "dashed: what was wanted")
+        yield _chart(rate, series["rates"], *_wanted("°/s", columns))
+    motors = Chart("motors", "Motors", "what each is told to give", low=0.0)
+    names = ((name, column) for column, name in enumerate(series["motors"].names))
+    yield _chart(motors, series["motors"], *(Line(name, "%", column=c) for name, c in names))
+    sticks = Chart("sticks", "Sticks", "of the pilot")
+    names = ((name, column) for column, name in enumerate(series["sticks"].names))
+    yield _chart(sticks, series["sticks"], *(Line(name, "%", column=c) for name, c in names))
+    wind = Chart("wind", "Wind", "as the vehicle reckons it; where it comes from", low=0.0)
+    yield _chart(
+        wind,
+        series["wind"],
+        Line("speed", "m/s", column=0),
+        Line("from", "°", axis=1, dots=True, column=1),
+    )
+
+
+def _wanted(unit: str, columns: Iterable[tuple[str, int]], *, dots: bool = False) -> Iterator[Line]:
+    for name, column in columns:
+        dashed = name.endswith("wanted")
+        yield Line(name, unit, dashed=dashed, dots=dots and not dashed, column=column)
+
+
 def _turned(chart: Chart) -> Chart:
     """Cut where the vehicle looks least, so that a heading about north is one line and not two."""
+    turns = [radians(value) for line in chart.lines for value in line.values if value is not None]
+    middle = degrees(atan2(sum(map(sin, turns)), sum(map(cos, turns))))
     for line in chart.lines:
-        turns = [radians(value) for value in line.values if value is not None]
-        middle = degrees(atan2(sum(map(sin, turns)), sum(map(cos, turns))))
         line.values = [
             None if value is None else round(middle + (value - middle + 180.0) % 360.0 - 180.0, 1)
             for value in line.values
@@ -179,10 +208,13 @@ def _turned(chart: Chart) -> Chart:
 def _chart(chart: Chart, series: Series, *lines: Line) -> Chart:
     """With its values, and without the lines that have none at all."""
     rows = series.rows()
-    for column, line in enumerate(lines):
+    for number, line in enumerate(lines):
+        column = line.column if line.column >= 0 else number
         line.values = [_rounded(values[column]) for _, values in rows]
         if any(value is not None for value in line.values):
             chart.lines.append(line)
+    if not any(any(line.values) for line in chart.lines):
+        chart.lines = []  # noughts throughout are what an import writes that was told nothing
     if chart.lines:
         chart.x = [round(t_s, 2) for t_s, _ in rows]
     return chart

@@ -142,6 +142,76 @@ class LogLine:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """Values of neighbouring columns of a plot of `gcs/flight_report/sampled.py`, from `first` on.
+
+    `leads`: a row is drawn now, with what the other columns had last.
+    """
+
+    plot: str
+    values: tuple[float | None, ...]
+    first: int = 0
+    leads: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Acceleration:
+    """Of the first accelerometer, m/s², in the body's axes."""
+
+    xyz: Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """The vehicle's own, seconds since it started."""
+
+    boot_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Build:
+    """Empty where it is not told."""
+
+    firmware: str = ""
+    hardware: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """`value` None: only its default is told."""
+
+    name: str
+    value: float | None
+    default: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """Degrees, and metres above mean sea level and above home."""
+
+    lat_deg: float
+    lon_deg: float
+    alt_amsl_m: float
+    alt_rel_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlanItem:
+    """A place of the mission that was sent to a vehicle, or read from it.
+
+    `vehicle` 0: that whose channel it is.  `above_home`: its height counts from there, else from
+    mean sea level.
+    """
+
+    vehicle: int
+    seq: int
+    lat_deg: float
+    lon_deg: float
+    alt_m: float
+    above_home: bool
+
+
 Fact: TypeAlias = (
     Identity
     | Pose
@@ -155,4 +225,11 @@ Fact: TypeAlias = (
     | Machine
     | Decision
     | LogLine
+    | Sample
+    | Acceleration
+    | Clock
+    | Build
+    | Parameter
+    | Fix
+    | PlanItem
 )

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from gcs.flight_report.facts import Decision
+from gcs.flight_report.facts import Build, Decision
 from gcs.flight_report.findings.finding import WENT_WRONG, Check, Finding
 from gcs.flight_report.lanes import Lane
+from gcs.flight_report.sampled import COLUMNS, Sampled
 from gcs.flight_report.series import Series
+from gcs.flight_report.spectrum import Spectrum
 from gcs.flight_report.track import Track
 from gcs.frames import Vec3
 from gcs.report import FenceShape
@@ -102,8 +104,6 @@ class Plots:
 
     height: Series = field(default_factory=lambda: Series(("height", "goal")))
     speed: Series = field(default_factory=lambda: Series(("over ground", "climb")))
-    attitude: Series = field(default_factory=lambda: Series(("roll", "pitch")))
-    heading: Series = field(default_factory=lambda: Series(("heading",)))
     battery: Series = field(default_factory=lambda: Series(("voltage", "left", "current")))
     link: Series = field(default_factory=lambda: Series(("messages", "lost")))
     vibration: Series = field(default_factory=lambda: Series(("x", "y", "z")))
@@ -111,6 +111,31 @@ class Plots:
     estimator: Series = field(
         default_factory=lambda: Series(("velocity", "position", "height", "compass"))
     )
+    sampled: dict[str, Sampled] = field(
+        default_factory=lambda: {plot: Sampled.of(plot) for plot in COLUMNS}
+    )
+
+
+@dataclass(slots=True)
+class ParameterSeen:
+    """A parameter: None is not known."""
+
+    value: float | None = None
+    """At the end."""
+    first: float | None = None
+    default: float | None = None
+    changed_s: float | None = None
+    """The last time."""
+
+    def told(self, t_s: float, value: float | None, default: float | None) -> None:
+        self.default = self.default if default is None else default
+        if value is None:
+            return
+        if self.first is None:
+            self.first = value
+        elif value != self.value:
+            self.changed_s = t_s
+        self.value = value
 
 
 @dataclass(slots=True)
@@ -120,11 +145,16 @@ class VehicleFlight:
     sysid: int
     autopilot: str = ""
     kind: str = ""
+    build: Build = field(default_factory=Build)
     messages: int = 0
     totals: Totals = field(default_factory=Totals)
     lanes: Lanes = field(default_factory=Lanes)
     plots: Plots = field(default_factory=Plots)
     track: Track = field(default_factory=Track)
+    plan: list[Vec3] = field(default_factory=list)
+    """The places of its mission, east, north, up."""
+    parameters: dict[str, ParameterSeen] = field(default_factory=dict)
+    spectrum: Spectrum = field(default_factory=Spectrum)
     requests: list[Request] = field(default_factory=list)
     requests_left_out: int = 0
     said: list[Said] = field(default_factory=list)

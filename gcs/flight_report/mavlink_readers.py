@@ -1,17 +1,12 @@
 """MAVLink messages -> facts: one reader for each message that a report uses.
 
-A reader takes named fields straight from the bytes.  A recorded message is a frame header, then the
-payload in wire order, zero-extended (`gcs/record/ros1.py`), so a field lies at the offset that the
-dialect gives it.
+Those that are plotted or shown as they are stand in `mavlink_samples.py`.
 """
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Mapping
-from functools import cache
 from math import isfinite
-from typing import TypeAlias
 
 from gcs.flight_report.facts import (
     Battery,
@@ -23,63 +18,15 @@ from gcs.flight_report.facts import (
     Text,
     Vibration,
 )
+from gcs.flight_report.mavlink_fields import Read, numbers, text
+from gcs.flight_report.mavlink_samples import SAMPLE_READERS
 from gcs.protocol.autopilot import autopilot_of, type_name
-from gcs.record.ros1 import FRAME_BYTES
-from gcs.wire.dialect import MESSAGES, TYPE_CODES, FieldDef, MessageDef
 from gcs.wire.ids import MavAutopilot, MavType
-from gcs.wire.text import clean
-
-Number: TypeAlias = "int | float"
-ReadNumbers: TypeAlias = Callable[[bytes], tuple[Number, ...]]
-"""The fields of a recorded message; an array gives as many numbers as it has elements.
-
-Raises struct.error where the message is too short for them."""
-
-Read: TypeAlias = Callable[[bytes], "list[Fact]"]
 
 _TEXT_BYTES = 50
 _NOT_VEHICLES = frozenset(
     {MavType.GCS, MavType.ANTENNA_TRACKER, MavType.ONBOARD_CONTROLLER, MavType.ADSB}
 )
-
-
-@cache
-def _by_name() -> dict[str, MessageDef]:
-    return {definition.name: definition for definition in MESSAGES.values()}
-
-
-def _field(message: str, name: str) -> FieldDef:
-    return next(field for field in _by_name()[message].fields if field.name == name)
-
-
-@cache
-def numbers(message: str, *names: str) -> ReadNumbers:
-    """Reads these fields of that message, in this order.  Raises KeyError, StopIteration."""
-    fields = [_field(message, name) for name in names]
-    parts = [
-        (
-            struct.Struct(f"<{field.array_length or 1}{TYPE_CODES[field.type]}").unpack_from,
-            FRAME_BYTES + field.offset,
-        )
-        for field in fields
-    ]
-
-    def read(data: bytes) -> tuple[Number, ...]:
-        found: list[Number] = []
-        for unpack, offset in parts:
-            found += unpack(data, offset)
-        return tuple(found)
-
-    return read
-
-
-def text(message: str, name: str, data: bytes) -> str:
-    """A `char` array, up to its first NUL; what is no UTF-8, or a control, becomes replacement
-    characters."""
-    field = _field(message, name)
-    start = FRAME_BYTES + field.offset
-    raw = data[start : start + field.size]
-    return clean(raw.partition(b"\0")[0].decode("utf-8", "replace"))
 
 
 def _heartbeat() -> Read:
@@ -201,4 +148,5 @@ MAVLINK_READERS: Mapping[str, Callable[[], Read]] = {
         *("velocity_variance", "pos_horiz_variance", "pos_vert_variance", "compass_variance"),
     ),
     "STATUSTEXT": _statustext,
+    **SAMPLE_READERS,
 }

@@ -1,73 +1,18 @@
 """Facts of the autopilots' own logs, imported: `/dataflash/NAME` and `/ulog/name_0`.
 
-Their messages are packed structs whose fields the channel's `ros1msg` schema lists, one a line; a
-text stands there as `string name # text of N bytes`, behind its length.  Position, attitude,
-battery and mode come in the derived topics, as in any record.
+Position, attitude, battery and mode come in the derived topics, as in any record; what is plotted
+or shown as it is stands in `onboard_samples.py`.
 """
 
 from __future__ import annotations
 
-import re
-import struct
 from collections.abc import Callable, Mapping
-from math import isfinite
-from typing import TypeAlias
 
 from gcs.flight_report.facts import Battery, Estimator, Fact, Gps, Text, Vibration
-
-Read: TypeAlias = Callable[[bytes], "list[Fact]"]
-_Value: TypeAlias = Callable[[bytes], "float | None"]
-
-_LINE = re.compile(r"(\w+)(?:\[(\d+)\])? (\w+)(?: # text of (\d+) bytes)?\Z")
-_CODES = {
-    "bool": "?",
-    "int8": "b",
-    "uint8": "B",
-    "int16": "h",
-    "uint16": "H",
-    "int32": "i",
-    "uint32": "I",
-    "int64": "q",
-    "uint64": "Q",
-    "float32": "f",
-    "float64": "d",
-}
+from gcs.flight_report.onboard_samples import ONBOARD_SAMPLES
+from gcs.flight_report.packed_fields import PackedFields, Read
 
 AUTOPILOT_OF_PREFIX = {"dataflash": "ardupilot", "ulog": "px4"}
-
-
-class PackedFields:
-    """Where each number of a packed struct lies.  Raises ValueError for another schema."""
-
-    def __init__(self, schema: bytes) -> None:
-        self._at: dict[str, tuple[struct.Struct, int]] = {}
-        offset = 0
-        for line in schema.decode("utf-8", "replace").splitlines():
-            found = _LINE.match(line)
-            if found is None:
-                raise ValueError(line)
-            kind, count, name, text_bytes = found.groups()
-            if kind == "string" and text_bytes is not None:
-                offset += 4 + int(text_bytes)
-                continue
-            if kind not in _CODES:
-                raise ValueError(line)
-            one = struct.Struct("<" + _CODES[kind])
-            self._at[name] = one, offset
-            offset += one.size * int(count or 1)
-
-    def value(self, *names: str) -> _Value:
-        """Reads the first of the names that there is; what is not finite, or not there, is None."""
-        known = next((self._at[name] for name in names if name in self._at), None)
-        if known is None:
-            return lambda data: None
-        packed, offset = known
-
-        def read(data: bytes) -> float | None:
-            (number,) = packed.unpack_from(data, offset)
-            return float(number) if isfinite(number) else None
-
-        return read
 
 
 def onboard_reader(log: str, name: str, schema: bytes) -> Read | None:
@@ -233,4 +178,5 @@ _READERS: Mapping[tuple[str, str], Callable[[PackedFields], Read]] = {
     ("ulog", "sensor_gps_0"): _vehicle_gps,
     ("ulog", "estimator_status_0"): _test_ratios,
     ("ulog", "battery_status_0"): _battery_status,
+    **ONBOARD_SAMPLES,
 }

@@ -52,7 +52,7 @@ def _from_above(flight: Flight, vehicle: VehicleFlight, points: list[TrackPoint]
 
     outlines = [zone_outline(zone) for zone in flight.fence.zones]
     corners = [corner for outline in outlines for corner in outline]
-    box = _box(points, vehicle.requests, plane, box_of(corners))
+    box = _box(points, vehicle.requests, vehicle.plan, plane, box_of(corners))
     box = box.at_least(box.height / 1.1, box.width / 2.2)
     view = View(box, WIDTH_PX, WIDTH_PX * box.height / box.width)
     parts = [
@@ -81,7 +81,7 @@ def _from_aside(flight: Flight, vehicle: VehicleFlight, points: list[TrackPoint]
         for height in (zone.floor_up_m, zone.ceiling_up_m)
         if height is not None
     ]
-    box = _box(points, vehicle.requests, plane, box_of(limits))
+    box = _box(points, vehicle.requests, vehicle.plan, plane, box_of(limits))
     box = Box(box.left, box.right, min(box.bottom, -0.5), box.top)
     true_px = WIDTH_PX * box.height / box.width
     height_px = min(max(0.55 * WIDTH_PX, min(0.8 * WIDTH_PX, true_px)), _STRETCH * true_px)
@@ -101,6 +101,7 @@ def _from_aside(flight: Flight, vehicle: VehicleFlight, points: list[TrackPoint]
 def _box(
     points: Iterable[TrackPoint],
     requests: Iterable[Request],
+    plan: Iterable[Vec3],
     plane: Plane,
     fence: Box | None,
 ) -> Box:
@@ -109,11 +110,10 @@ def _box(
     assert flown is not None
     reach = max(flown.width, flown.height, _LEAST_M)
     near = flown.padded(0.0, 0.75 * reach)
-    for request in requests:
-        if request.goal_enu is not None:
-            x, y = plane(request.goal_enu)
-            if near.holds(x, y):
-                flown = flown.joined(Box(x, x, y, y))
+    for enu in (*plan, *(request.goal_enu for request in requests if request.goal_enu)):
+        x, y = plane(enu)
+        if near.holds(x, y):
+            flown = flown.joined(Box(x, x, y, y))
     flown = flown.at_least(_LEAST_M, _LEAST_M / 2)
     size = max(flown.width, flown.height)
     if fence is not None and max(fence.width, fence.height) <= FENCE_REACH * size:
@@ -124,10 +124,12 @@ def _box(
 def _drawing(
     view: View, plane: Plane, vehicle: VehicleFlight, points: list[TrackPoint]
 ) -> list[str]:
-    parts = _path(view, plane, vehicle.track.drawn())
-    for request in vehicle.requests:
-        if request.goal_enu is not None and request.word == "goto":
-            parts.append(_goal(view, plane(request.goal_enu), request))
+    parts = [*_plan(view, plane, vehicle.plan), *_path(view, plane, vehicle.track.drawn())]
+    parts += [
+        _goal(view, plane(request.goal_enu), request)
+        for request in vehicle.requests
+        if request.goal_enu is not None and request.word == "goto"
+    ]
     parts += _ends(view, plane, points)
     first = main_trouble(vehicle)
     if first is not None:
@@ -140,6 +142,19 @@ def _drawing(
             f'<text x="{x:.1f}" y="{y + 4.5:.1f}" text-anchor="middle">!</text></g>'
         )
     return parts
+
+
+def _plan(view: View, plane: Plane, plan: Sequence[Vec3]) -> list[str]:
+    """The mission's places in their order, and straight lines between them."""
+    if not plan:
+        return []
+    places = [view.px(*plane(enu)) for enu in plan]
+    line = " ".join(f"{x:.1f},{y:.1f}" for x, y in places)
+    dots = "".join(
+        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5"><title>mission, place {n}</title></circle>'
+        for n, (x, y) in enumerate(places, 1)
+    )
+    return [f'<g class="plan"><polyline points="{line}"/>{dots}</g>']
 
 
 def _path(view: View, plane: Plane, pieces: Sequence[Sequence[TrackPoint]]) -> list[str]:
@@ -207,8 +222,8 @@ def _ends(view: View, plane: Plane, points: Sequence[TrackPoint]) -> list[str]:
     return parts
 
 
-def grid(view: View, x_name: str, y_name: str) -> list[str]:
-    """Lines of round metres, and what both axes are."""
+def grid(view: View, x_name: str, y_name: str, unit: str = ", m") -> list[str]:
+    """Lines of round numbers, and what both axes are."""
     box = view.box
     parts = []
     for x in ticks(box.left, box.right, 7):
@@ -225,9 +240,9 @@ def grid(view: View, x_name: str, y_name: str) -> list[str]:
             parts.append(f'<text x="5" y="{at - 3:.1f}">{y:g}</text>')
     parts.append(
         f'<text x="{view.width_px - 5:.1f}" y="{view.height_px - 5:.1f}" text-anchor="end">'
-        f"{x_name}, m</text>"
+        f"{x_name}{unit}</text>"
     )
-    parts.append(f'<text x="5" y="18">{y_name}, m</text>')
+    parts.append(f'<text x="5" y="18">{y_name}{unit}</text>')
     return [f'<g class="grid">{"".join(parts)}</g>']
 
 

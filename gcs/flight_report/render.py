@@ -16,7 +16,9 @@ from gcs.flight_report.findings.finding import Finding
 from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.html_text import script_json, text
 from gcs.flight_report.number_format import duration, metres, utc
+from gcs.flight_report.parameters_html import parameters
 from gcs.flight_report.path_svg import path_pictures
+from gcs.flight_report.spectrum_svg import spectrum_figure
 from gcs.flight_report.summary import (
     consequences,
     main_trouble,
@@ -71,6 +73,8 @@ def _head(flight: Flight, vehicle: VehicleFlight | None) -> str:
     lines = [began, f"{duration(flight.seconds)} of record", f"{flight.size / 1e6:.1f} MB"]
     if vehicle is not None:
         lines.insert(0, f"{vehicle_name(vehicle)}, vehicle {vehicle.sysid}")
+        build = vehicle.build
+        lines[1:1] = [part for part in (build.firmware, build.hardware) if part]
     facts = "".join(f"<li>{text(line)}</li>" for line in lines if line)
     return f'<h1>{text(flight.name)}</h1><ul class="facts">{facts}</ul>'
 
@@ -107,8 +111,13 @@ def _sections(flight: Flight, vehicle: VehicleFlight | None, data: ChartData) ->
             '<p class="quiet screen-only">Drag over a plot to look closer, in all of them; '
             "tap twice to see all.</p>"
         )
-        sections.append(_section("plots", "Plots", f'{note}<div class="plots">{plots}</div>'))
+        spectrum = spectrum_figure(vehicle.spectrum)
+        drawn = f'{note}<div class="plots">{plots}{spectrum}</div>'
+        sections.append(_section("plots", "Plots", drawn))
     sections.append(_section("checks", "What was looked at", tables_html.checks(vehicle)))
+    set_to = parameters(vehicle)
+    if set_to:
+        sections.append(_section("parameters", "Parameters", set_to))
     if vehicle.said:
         sections.append(_section("texts", "What the vehicle said", tables_html.said(vehicle)))
     return sections

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import msgspec
 
-from gcs.flight_report.facts import Decision, Fact, Identity, LogLine, Text
+from gcs.flight_report.facts import Build, Decision, Fact, Identity, LogLine, PlanItem, Text
 from gcs.flight_report.flight import Fence, Flight, VehicleFlight
+from gcs.flight_report.mavlink_samples import version_text
 from gcs.flight_report.topics import UNREADABLE, Source, source_of
 from gcs.flight_report.vehicle_scan import VehicleScan
 from gcs.gate.policy.parse import DEFAULT
@@ -116,6 +117,8 @@ class Scan:
         match fact:
             case Decision(vehicle=sysid):
                 self._vehicle(sysid).handle(fact, t_s)
+            case PlanItem(vehicle=sysid) if source.vehicle == 0 and sysid:
+                self._vehicle(sysid).handle(fact, t_s)
             case LogLine(level, node, text):
                 # Where there is no STATUSTEXT, the log has what the vehicle said.
                 said = node == VEHICLE_NODE and not self._says_texts
@@ -137,10 +140,20 @@ class Scan:
         for sysid, vehicle in self._vehicles.items():
             found = vehicle.finish(flight.seconds)
             if _is_vehicle(found):
+                self._name_build(found)
                 flight.vehicles[sysid] = found
         if not flight.fence.margin_h_m:
             flight.fence.margin_h_m, flight.fence.margin_v_m = self._margins
         return flight
+
+    def _name_build(self, vehicle: VehicleFlight) -> None:
+        """Of a .ulg, which says it about itself."""
+        said = self.flight.metadata.get("ulog")
+        if said is not None:
+            release = said.get("ver_sw_release", "")
+            version = version_text(int(release)) if release.isdecimal() else ""
+            firmware = f"{version} ({said.get('ver_sw', '')[:8]})".strip()
+            vehicle.build = Build(firmware, said.get("ver_hw", ""))
 
     def _vehicle(self, sysid: int) -> VehicleScan:
         known = self._vehicles.get(sysid)

@@ -154,8 +154,10 @@ def path_key(vehicle: VehicleFlight, fence: Fence) -> str:
         items.append('<li><i class="dot good"></i> goal, accepted</li>')
     if "refused" in outcomes:
         items.append('<li><i class="cross">✕</i> goal, refused (→ out of view)</li>')
+    if vehicle.plan:
+        items.append('<li><i class="planned"></i> mission</li>')
     if vehicle.went_wrong:
-        items.append('<li><i class="dot bad">!</i> where it went wrong first</li>')
+        items.append('<li><i class="dot bad">!</i> where it went wrong</li>')
     if any(zone.inclusion for zone in fence.zones):
         items.append('<li><i class="swatch inside"></i> margin of the fence</li>')
     if any(not zone.inclusion for zone in fence.zones):

@@ -17,10 +17,13 @@ from gcs.flight_report.facts import (
     Fact,
     LogLine,
     Machine,
+    Parameter,
     Pose,
     Status,
 )
-from gcs.flight_report.mavlink_readers import MAVLINK_READERS, Read
+from gcs.flight_report.mavlink_fields import Read
+from gcs.flight_report.mavlink_readers import MAVLINK_READERS
+from gcs.flight_report.mavlink_samples import PLAN_READERS
 from gcs.flight_report.onboard_logs import AUTOPILOT_OF_PREFIX, onboard_reader
 from gcs.record.log_line import read_log_line
 from gcs.report import ConditionItem, PointEnu
@@ -49,10 +52,13 @@ def source_of(topic: str, schema: bytes = b"") -> Source | None:
     """None for a topic that a report does not use."""
     match topic.split("/"):
         case ["", "mavlink", sysid, compid, name] if sysid.isdecimal() and compid.isdecimal():
-            if int(compid) != AUTOPILOT_COMPONENT:
+            own = int(compid) == AUTOPILOT_COMPONENT
+            make = PLAN_READERS.get(name) or (MAVLINK_READERS.get(name) if own else None)
+            if make is None and not own:
                 return None
-            make = MAVLINK_READERS.get(name)
-            return Source(int(sysid), make() if make else None, heard=True)
+            return Source(int(sysid) if own else 0, make() if make else None, heard=own)
+        case ["", "vehicle", sysid, "param"] if sysid.isdecimal():
+            return Source(int(sysid), _parameter)
         case ["", "vehicle", sysid, "state"] if sysid.isdecimal():
             return Source(int(sysid), _state)
         case ["", "vehicle", sysid, "fsa"] if sysid.isdecimal():
@@ -114,6 +120,12 @@ class _DecisionMessage(msgspec.Struct):
     numbers: dict[str, float | None] = {}
 
 
+class _ParameterMessage(msgspec.Struct):
+    name: str
+    value: float
+
+
+_decode_parameter = msgspec.json.Decoder(_ParameterMessage).decode
 _decode_state = msgspec.json.Decoder(_StateMessage).decode
 _decode_machine = msgspec.json.Decoder(_MachineMessage).decode
 _decode_decision = msgspec.json.Decoder(_DecisionMessage).decode
@@ -174,6 +186,14 @@ def _decision(data: bytes) -> list[Fact]:
             found.numbers,
         )
     ]
+
+
+def _parameter(data: bytes) -> list[Fact]:
+    try:
+        found = _decode_parameter(data)
+    except msgspec.DecodeError:
+        return []
+    return [Parameter(found.name, found.value)]
 
 
 def _log(data: bytes) -> list[Fact]:

@@ -7,28 +7,38 @@ from math import dist
 from typing import assert_never
 
 from gcs.flight_report.facts import (
+    Acceleration,
     Battery,
+    Build,
     Cells,
+    Clock,
     Decision,
     Estimator,
     Fact,
+    Fix,
     Gps,
     Identity,
     LogLine,
     Machine,
+    Parameter,
+    PlanItem,
     Pose,
+    Sample,
     Status,
     Text,
     Vibration,
 )
 from gcs.flight_report.findings.battery import BatteryDetector
+from gcs.flight_report.findings.clock import ClockDetector
 from gcs.flight_report.findings.estimator import AttitudeDetector, EstimatorDetector
 from gcs.flight_report.findings.failsafes import FailsafeDetector
 from gcs.flight_report.findings.finding import Detector, Situation, in_order
 from gcs.flight_report.findings.gate import GateDetector
 from gcs.flight_report.findings.gps import FIX_3D, GpsDetector
 from gcs.flight_report.findings.link import LinkDetector
+from gcs.flight_report.findings.motors import MotorsDetector
 from gcs.flight_report.findings.vibration import VibrationDetector
+from gcs.flight_report.findings.wind import WindDetector
 from gcs.flight_report.flight import (
     MAX_REQUESTS,
     MAX_TEXTS,
@@ -36,6 +46,7 @@ from gcs.flight_report.flight import (
     Said,
     VehicleFlight,
 )
+from gcs.flight_report.shown import Shown
 from gcs.frames import Vec3
 
 _IN_AIR = frozenset({"IN_AIR", "TAKEOFF", "LANDING"})
@@ -66,8 +77,10 @@ class VehicleScan:
     """Where it was armed; None: the record begins with an armed vehicle, or knows no place."""
     _has_sys_status: bool = False
     _open_requests: dict[int, Request] = field(default_factory=dict)
+    _shown: Shown = field(init=False)
 
     def __post_init__(self) -> None:
+        self._shown = Shown(self.flight)
         self.now.sysid = self.flight.sysid
         self._detectors = (
             GateDetector(),
@@ -76,6 +89,9 @@ class VehicleScan:
             EstimatorDetector(),
             BatteryDetector(),
             VibrationDetector(),
+            MotorsDetector(),
+            WindDetector(),
+            ClockDetector(),
             AttitudeDetector(),
             self.link,
         )
@@ -94,6 +110,7 @@ class VehicleScan:
 
     def finish(self, end_s: float) -> VehicleFlight:
         flight = self.flight
+        self._shown.finish()
         self.now.t_s = end_s
         for detector in self._detectors:
             result = detector.result(self.now)
@@ -111,7 +128,7 @@ class VehicleScan:
         match fact:
             case Identity(autopilot, kind):
                 self.flight.autopilot, self.flight.kind = autopilot, kind
-                self.now.autopilot = autopilot
+                self.now.autopilot, self.now.kind = autopilot, kind
             case Status():
                 self._status(fact, t_s)
             case Pose():
@@ -135,7 +152,9 @@ class VehicleScan:
                 self.flight.lanes.severity.add(t_s, severity)
             case Decision():
                 self._decision(fact, t_s)
-            case Cells() | LogLine():
+            case Sample() | Acceleration() | Build() | Parameter() | Fix() | PlanItem():
+                self._shown.take(fact, t_s, self._here, in_air=self.now.in_air)
+            case Cells() | LogLine() | Clock():
                 pass
             case _:
                 assert_never(fact)
@@ -203,8 +222,7 @@ class VehicleScan:
         up_m = fact.pos_enu[2]
         flight.plots.height.add(t_s, (up_m, self._goal_up_m if self.now.flying else None))
         flight.plots.speed.add(t_s, (fact.groundspeed_mps, fact.climb_mps))
-        flight.plots.attitude.add(t_s, (fact.roll_deg, fact.pitch_deg))
-        flight.plots.heading.add(t_s, (fact.yaw_deg,))
+        self._shown.pose(fact, t_s)
         if not self.now.flying:
             return
         totals.max_speed_mps = max(totals.max_speed_mps or 0.0, fact.groundspeed_mps)

@@ -85,7 +85,14 @@ MESSAGES = (
 )
 """Messages that are sent or interpreted: each gets a class in `messages.py` and an id."""
 
-IDS_ONLY = ("POSITION_TARGET_LOCAL_NED",)
+IDS_ONLY = (
+    "POSITION_TARGET_LOCAL_NED",
+    "ATTITUDE_TARGET",
+    "SERVO_OUTPUT_RAW",
+    "RC_CHANNELS",
+    "VIBRATION",
+    "WIND",
+)
 """Messages that are requested for the record and not interpreted: each gets an id only."""
 
 DEFAULTS = {("HEARTBEAT", "mavlink_version"): 3}

@@ -53,7 +53,7 @@ class Finding:
 CAUSE_WITHIN_S = 1.0
 """A cause may be told so much later than what follows from it: batteries, GPS and estimator speak
 once or twice a second, texts and the gate at once."""
-_FOLLOWS = {"attitude": 1, "failsafe": 1, "gate": 2, "request": 3}
+_FOLLOWS = {"thrust": 1, "attitude": 1, "failsafe": 1, "gate": 2, "request": 3}
 """Of findings at the same time, what follows from what: sensors, vehicle, gate, requests."""
 
 
@@ -103,6 +103,8 @@ class Situation:
     """Flying, and neither at take-off nor landing, where contact with the ground shakes it."""
     mode: str = ""
     sysid: int = 0
+    kind: str = ""
+    """Of vehicle: "quadrotor"."""
 
 
 class Detector(Protocol):

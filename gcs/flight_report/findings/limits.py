@@ -52,6 +52,8 @@ SATELLITES_NEEDED = {
     "ardupilot": Limit(6, "", "EK3_GPS_CHECK of an ArduCopter 4.7 (the number is from memory)"),
 }
 
+STRONG_WIND = Limit(8.0, "m/s", "mission_wind_m_s of this project's default policy")
+
 LOSS = Limit(5.0, "%", "this project's own choice")
 
 WIKI = "ArduPilot wiki, Measuring Vibration"
@@ -214,6 +216,16 @@ VIBRATION = Row(
     "vibration above {limit:g} {unit}",
     "up to {worst:.1f} {unit}, at {at}; above the limit {spells}",
     "up to {worst:.1f} {unit}",
+)
+
+WIND = Row(
+    "wind",
+    "Wind",
+    Limits(((Level.WARNING, STRONG_WIND),), f"below {STRONG_WIND.value:g} m/s", STRONG_WIND.source),
+    "the wind was stronger than {limit:g} m/s",
+    "up to {worst:.1f} m/s at {at}; {spells}",
+    "up to {worst:.1f} m/s",
+    mild=True,
 )
 
 

@@ -27,6 +27,8 @@ from gcs.mcap_file.batch_writer import BatchWriter
 from gcs.mcap_file.errors import BadLogError
 
 DROPOUTS = "dropouts"
+DEFAULTS = "parameter_defaults"
+"""Of the airframe where it has its own, else of the firmware; where the log tells them."""
 _HEADER_BYTES = 16
 _DEFINITIONS = "BFIMPQ"
 """Types of messages that stand before the data (PX4 User Guide, ULog File Format)."""
@@ -169,12 +171,24 @@ def _rest(log: Any, base_us: int) -> dict[str, Records]:
     values += [(at, name.encode(), value) for at, name, value in log.changed_parameters]
     # In a damaged log one may be bytes.
     values = [row for row in values if isinstance(row[2], int | float)]
+    defaults = _defaults(log, start)
     gaps = [(each.timestamp, each.duration) for each in log.dropouts]
     return {
         TEXTS: _made(texts, [("level", "u1"), ("text", _text_type(texts, 2))], base_us),
         PARAMETERS: _made(values, [("name", _text_type(values, 1)), ("value", "<f8")], base_us),
+        DEFAULTS: _made(defaults, [("name", _text_type(defaults, 1)), ("value", "<f8")], base_us),
         DROPOUTS: _made(gaps, [("duration_ms", "<u4")], base_us),
     }
+
+
+def _defaults(log: Any, start_us: int) -> list[Any]:
+    if not log.has_default_parameters:
+        return []
+    known = {**log.get_default_parameters(0), **log.get_default_parameters(1)}
+    # One that is not told is as it is.
+    known = {**log.initial_parameters, **known}
+    values = [(start_us, name.encode(), value) for name, value in known.items()]
+    return [row for row in values if isinstance(row[2], int | float)]
 
 
 def _text_type(rows: list[Any], column: int) -> str:

@@ -29,6 +29,17 @@ WANTED_HZ: tuple[tuple[MsgId, float], ...] = (
     (MsgId.FENCE_STATUS, 1.0),
 )
 
+FOR_THE_RECORD_HZ: dict[int, float] = {
+    MsgId.ATTITUDE_TARGET: 5.0,
+    MsgId.SERVO_OUTPUT_RAW: 4.0,
+    MsgId.VIBRATION: 1.0,
+    MsgId.RC_CHANNELS: 1.0,
+    MsgId.WIND: 1.0,
+}
+"""What an ArduPilot is asked for once, so that a report can tell of motors, sticks, vibration and
+wind: it sends none of them unasked.  A PX4 does, and more often.  No safety stands on them, so
+clients of the bridge may change their rates."""
+
 SENT_BY: dict[int, str] = {
     MsgId.ESTIMATOR_STATUS: "px4",
     MsgId.EKF_STATUS_REPORT: "ardupilot",
@@ -99,6 +110,9 @@ class Discovery:
             yield _request(telemetry, MsgId.HOME_POSITION)
         if first:
             yield _request(telemetry, MsgId.AUTOPILOT_VERSION)
+            if telemetry.autopilot.name == "ardupilot":
+                for msgid, hz in FOR_THE_RECORD_HZ.items():
+                    yield message_interval(telemetry, msgid, hz)
         everything = first or telemetry.pos_ned is None
         if self._silent(telemetry, now_ns) and now_ns - self._streams_asked_ns >= self._pause_ns:
             everything = True

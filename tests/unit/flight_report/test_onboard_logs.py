@@ -110,5 +110,5 @@ class TestPackedFields:
         assert source_of("/dataflash/GPS", schema) is None
 
     def test_topics_that_are_not_used(self) -> None:
-        assert source_of("/dataflash/IMU", b"uint8 a\n") is None
-        assert source_of("/ulog/sensor_combined_0", b"uint8 a\n") is None
+        assert source_of("/dataflash/UNIT", b"uint8 a\n") is None
+        assert source_of("/ulog/cpuload_0", b"uint8 a\n") is None

@@ -270,7 +270,7 @@ class TestContent:
     def test_every_plot_has_its_numbers(self, flight: Flight) -> None:
         data = chart_data(flight, flight.main_vehicle())
         assert [chart.id for chart in data.charts] == [
-            *("height", "speed", "attitude", "heading", "battery", "link", "gps"),
+            *("height", "speed", "place", "battery", "link", "gps"),
         ]
         for chart in data.charts:
             assert all(len(line.values) == len(chart.x) for line in chart.lines)
