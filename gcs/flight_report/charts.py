@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from math import atan2, cos, degrees, radians, sin
 
 import msgspec
@@ -10,6 +10,7 @@ import msgspec
 from gcs.flight_report.findings.limits import BAD, FAIR, HDOP_BAD, REJECTED
 from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.sampled import WANTED
+from gcs.flight_report.scene import Scene, scene_of
 from gcs.flight_report.series import Series
 
 MAX_MARKS = 40
@@ -37,6 +38,13 @@ class LimitLine(msgspec.Struct):
     axis: int = 0
 
 
+class Mark(msgspec.Struct):
+    """A finding in every plot."""
+
+    t_s: float
+    level: str
+
+
 class Chart(msgspec.Struct):
     id: str
     title: str
@@ -50,28 +58,26 @@ class Chart(msgspec.Struct):
     """The second scale reaches at least so far."""
     circle: bool = False
     """Degrees of a heading, which may be drawn beyond 0 and 360."""
-
-
-class Mark(msgspec.Struct):
-    """A finding in every plot."""
-
-    t_s: float
-    level: str
+    vehicle: int = 0
+    marks: list[Mark] = []
 
 
 class ChartData(msgspec.Struct):
     seconds: float
-    marks: list[Mark]
     charts: list[Chart]
+    scene: Scene | None = None
 
 
-def chart_data(flight: Flight, vehicle: VehicleFlight | None) -> ChartData:
+def chart_data(flight: Flight, vehicles: Sequence[VehicleFlight]) -> ChartData:
     """Only plots that have something to draw."""
-    if vehicle is None:
-        return ChartData(flight.seconds, [], [])
-    marks = [Mark(round(f.t_s, 2), f.level.value) for f in vehicle.went_wrong[:MAX_MARKS]]
-    charts = [chart for chart in _charts(vehicle) if chart.lines]
-    return ChartData(round(flight.seconds, 2), marks, charts)
+    charts = []
+    for vehicle in vehicles:
+        marks = [Mark(round(f.t_s, 2), f.level.value) for f in vehicle.went_wrong[:MAX_MARKS]]
+        for chart in _charts(vehicle):
+            if chart.lines:
+                chart.vehicle, chart.marks = vehicle.sysid, marks
+                charts.append(chart)
+    return ChartData(round(flight.seconds, 2), charts, scene_of(flight, vehicles))
 
 
 def _charts(vehicle: VehicleFlight) -> list[Chart]:

@@ -16,6 +16,8 @@ from gcs.report import FenceShape
 
 MAX_REQUESTS = 500
 MAX_TEXTS = 300
+MAX_VEHICLES = 6
+"""On one page."""
 
 
 @dataclass(slots=True)
@@ -188,6 +190,16 @@ class Flight:
     vehicles: dict[int, VehicleFlight] = field(default_factory=dict)
     chosen: int | None = None
     """The vehicle that the page is to be about; None: the main one."""
+
+    def shown_vehicles(self) -> list[VehicleFlight]:
+        """Whom the page is about: the chosen one, else all that flew, the main one first."""
+        main = self.main_vehicle()
+        if main is None:
+            return []
+        if self.chosen in self.vehicles:
+            return [main]
+        others = (v for _, v in sorted(self.vehicles.items()) if v is not main)
+        return [main, *(v for v in others if v.totals.take_offs)][:MAX_VEHICLES]
 
     def main_vehicle(self) -> VehicleFlight | None:
         """The chosen one, else the one that flew longest, was armed longest, said most."""

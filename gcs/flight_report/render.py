@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
+from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
 
@@ -12,6 +13,7 @@ import msgspec
 
 from gcs.flight_report import tables_html
 from gcs.flight_report.charts import ChartData, chart_data
+from gcs.flight_report.drift import drift_before
 from gcs.flight_report.findings.finding import Finding
 from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.html_text import script_json, text
@@ -37,16 +39,16 @@ _PLACE = re.compile(r"\{\{(\w+)\}\}")
 
 def page(flight: Flight) -> str:
     """The whole page.  Everything that comes from the record is escaped."""
-    vehicle = flight.main_vehicle()
-    data = chart_data(flight, vehicle)
+    vehicles = flight.shown_vehicles()
+    data = chart_data(flight, vehicles)
     licence = f"/* uPlot 1.6.32\n\n{_asset('uPlot.LICENSE')}*/"
-    script = f"{licence}\n{_asset('uPlot.iife.min.js')}\n{_asset('report.js')}"
+    script = f"{licence}\n{_asset('uPlot.iife.min.js')}\n{_asset('report.js')}{_asset('scene.js')}"
     parts = {
         "title": text(flight.name),
         "policy": _content_policy(script),
         "style": f"{_asset('uPlot.min.css')}\n{_asset('report.css')}",
-        "head": _head(flight, vehicle),
-        "body": "".join(_sections(flight, vehicle, data)),
+        "head": _head(flight, vehicles),
+        "body": "".join(_body(flight, vehicles, data)),
         "foot": _foot(flight),
         "data": script_json(msgspec.json.encode(data)),
         "script": script,
@@ -68,43 +70,86 @@ def _content_policy(script: str) -> str:
     )
 
 
-def _head(flight: Flight, vehicle: VehicleFlight | None) -> str:
+def _body(flight: Flight, vehicles: list[VehicleFlight], data: ChartData) -> Iterator[str]:
+    if len(vehicles) < 2:
+        vehicle = vehicles[0] if vehicles else None
+        yield _verdict(flight, vehicle)
+        yield _notes(flight, vehicles)
+        if vehicle is not None:
+            yield _totals(vehicle)
+            yield from _sections(flight, vehicle, data)
+        return
+    for vehicle in vehicles:
+        name = f"Vehicle {vehicle.sysid}"
+        yield f'<h2 class="whose"><a href="#vehicle-{vehicle.sysid}">{name}</a></h2>'
+        yield _verdict(flight, vehicle)
+    yield _notes(flight, vehicles)
+    yield _scene(data)
+    for vehicle in vehicles:
+        yield f'<h2 class="whose" id="vehicle-{vehicle.sysid}">Vehicle {vehicle.sysid}</h2>'
+        yield _totals(vehicle)
+        yield from _sections(flight, vehicle, data, f"-{vehicle.sysid}")
+
+
+def _scene(data: ChartData) -> str:
+    if data.scene is None:
+        return ""
+    return (
+        '<figure class="scene"><canvas id="scene" tabindex="0" role="img" '
+        'aria-label="The path in three dimensions"></canvas>'
+        '<figcaption>In three dimensions. <span class="screen-only">Drag to turn it, pinch or '
+        "click and scroll to come closer; dotted on the ground: its shadow.</span></figcaption>"
+        "</figure>"
+    )
+
+
+def _head(flight: Flight, vehicles: list[VehicleFlight]) -> str:
     began = utc(flight.start_ns)
     lines = [began, f"{duration(flight.seconds)} of record", f"{flight.size / 1e6:.1f} MB"]
-    if vehicle is not None:
-        lines.insert(0, f"{vehicle_name(vehicle)}, vehicle {vehicle.sysid}")
+    for vehicle in reversed(vehicles):
         build = vehicle.build
-        lines[1:1] = [part for part in (build.firmware, build.hardware) if part]
+        told = [part for part in (build.firmware, build.hardware) if part]
+        name = " ".join([vehicle_name(vehicle), *told[:1]])
+        lines[:0] = [f"{name}, vehicle {vehicle.sysid}", *told[1:]]
     facts = "".join(f"<li>{text(line)}</li>" for line in lines if line)
     return f'<h1>{text(flight.name)}</h1><ul class="facts">{facts}</ul>'
 
 
-def _sections(flight: Flight, vehicle: VehicleFlight | None, data: ChartData) -> list[str]:
-    sections = [_verdict(flight, vehicle)]
-    if vehicle is None:
-        return sections
-    sections.append(_totals(vehicle))
+def _sections(
+    flight: Flight, vehicle: VehicleFlight, data: ChartData, suffix: str = ""
+) -> list[str]:
+    """`suffix` of the names of the sections, where the page has several vehicles."""
+    sections = []
+
+    def add(name: str, title: str, inner: str) -> None:
+        sections.append(f'<section id="{name}{suffix}"><h2>{title}</h2>{inner}</section>')
+
     pictures = path_pictures(flight, vehicle)
     if pictures:
         figures = "".join(
             f"<figure>{p.svg}<figcaption>{text(p.caption)}</figcaption></figure>" for p in pictures
         )
         key = tables_html.path_key(vehicle, flight.fence)
-        sections.append(_section("path", "Path", f'<div class="pictures">{figures}</div>{key}'))
+        scene = "" if suffix else _scene(data)
+        add("path", "Path", f'<div class="pictures">{figures}</div>{key}{scene}')
     else:
-        quiet = '<p class="quiet">The record has no position of this vehicle.</p>'
-        sections.append(_section("path", "Path", quiet))
+        add("path", "Path", '<p class="quiet">The record has no position of this vehicle.</p>')
     lanes = timeline(flight, vehicle)
     if lanes:
-        sections.append(_section("states", "States", lanes))
-    sections.append(_section("findings", "Findings", tables_html.findings(vehicle)))
+        add("states", "States", lanes)
+    add("findings", "Findings", tables_html.findings(vehicle))
     if vehicle.requests:
-        sections.append(_section("requests", "Requests", tables_html.requests(vehicle)))
-    if data.charts:
+        add("requests", "Requests", tables_html.requests(vehicle))
+    charts = [
+        (number, chart)
+        for number, chart in enumerate(data.charts)
+        if chart.vehicle == vehicle.sysid
+    ]
+    if charts:
         plots = "".join(
             f'<figure class="plot" data-chart="{number}"><h3>{text(chart.title)} '
             f"<small>{text(chart.about)}</small></h3></figure>"
-            for number, chart in enumerate(data.charts)
+            for number, chart in charts
         )
         note = (
             '<noscript><p class="quiet">The plots need JavaScript.</p></noscript>'
@@ -113,13 +158,13 @@ def _sections(flight: Flight, vehicle: VehicleFlight | None, data: ChartData) ->
         )
         spectrum = spectrum_figure(vehicle.spectrum)
         drawn = f'{note}<div class="plots">{plots}{spectrum}</div>'
-        sections.append(_section("plots", "Plots", drawn))
-    sections.append(_section("checks", "What was looked at", tables_html.checks(vehicle)))
+        add("plots", "Plots", drawn)
+    add("checks", "What was looked at", tables_html.checks(vehicle))
     set_to = parameters(vehicle)
     if set_to:
-        sections.append(_section("parameters", "Parameters", set_to))
+        add("parameters", "Parameters", set_to)
     if vehicle.said:
-        sections.append(_section("texts", "What the vehicle said", tables_html.said(vehicle)))
+        add("texts", "What the vehicle said", tables_html.said(vehicle))
     return sections
 
 
@@ -135,7 +180,8 @@ def _verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
         then = "".join(_consequence(later, first) for later in consequences(vehicle, first))
         chain = f'<ol class="chain">{then}</ol>' if then else ""
     level = first.level.value if first else "ok"
-    before = what_was_before(vehicle)
+    drift = drift_before(vehicle, first) if vehicle is not None and first is not None else ""
+    before = " ".join(filter(None, (drift, what_was_before(vehicle))))
     before = f'<p class="before">{text(before)}</p>' if before else ""
     trouble = (
         f'<div class="trouble-box {level}"><h2>What went wrong</h2><p>{text(wrong)}</p>'
@@ -143,8 +189,7 @@ def _verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
         if wrong
         else ""
     )
-    notes = "".join(f'<p class="quiet">{text(note)}</p>' for note in _record_notes(flight, vehicle))
-    return f'<section class="verdict">{happened}{trouble}{notes}</section>'
+    return f'<section class="verdict">{happened}{trouble}</section>'
 
 
 def _consequence(later: Finding, first: Finding) -> str:
@@ -154,16 +199,16 @@ def _consequence(later: Finding, first: Finding) -> str:
     return f"<li><span>{when}</span><div>{text(later.title)} {detail}</div></li>"
 
 
-def _record_notes(flight: Flight, vehicle: VehicleFlight | None) -> list[str]:
+def _notes(flight: Flight, vehicles: list[VehicleFlight]) -> str:
     notes = []
     if not flight.closed:
         notes.append("The file was not closed: its writer was killed, or is still writing.")
     if damage := what_is_damaged(flight):
         notes.append(damage)
-    others = other_vehicles(flight, vehicle)
+    others = other_vehicles(flight, vehicles)
     if others:
         notes.append("Also in the record: " + "; ".join(others[:20]) + ".")
-    return notes
+    return "".join(f'<p class="quiet">{text(note)}</p>' for note in notes)
 
 
 def _totals(vehicle: VehicleFlight) -> str:
@@ -185,10 +230,6 @@ def _totals(vehicle: VehicleFlight) -> str:
         tiles.append(("battery", f"{first:.1f} → {last:.1f} V"))
     cells = "".join(f"<div><dt>{name}</dt><dd>{text(value)}</dd></div>" for name, value in tiles)
     return f'<dl class="tiles">{cells}</dl>'
-
-
-def _section(name: str, title: str, inner: str) -> str:
-    return f'<section id="{name}"><h2>{title}</h2>{inner}</section>'
 
 
 def _foot(flight: Flight) -> str:

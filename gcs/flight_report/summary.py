@@ -129,12 +129,12 @@ def what_went_wrong(flight: Flight, vehicle: VehicleFlight | None) -> str:
     return f"At {clock(first.t_s)} {first.title}{detail}."
 
 
-def other_vehicles(flight: Flight, vehicle: VehicleFlight | None) -> list[str]:
+def other_vehicles(flight: Flight, shown: list[VehicleFlight]) -> list[str]:
     """A line for each vehicle that this report is not about."""
     return [
         sentence(
             f"vehicle {sysid}: {vehicle_name(other)}, flew for {duration(other.totals.flying_s)}"
         )
         for sysid, other in sorted(flight.vehicles.items())
-        if other is not vehicle
+        if other not in shown
     ]

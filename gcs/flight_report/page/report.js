@@ -62,12 +62,14 @@
     ctx.restore();
   }
 
-  function drawMarks(u) {
-    const { left, top, width, height } = u.bbox;
-    for (const mark of data.marks) {
-      const x = u.valToPos(mark.t_s, "x", true);
-      if (x >= left && x <= left + width) line(u, [x, top], [x, top + height], ink(LEVELS[mark.level]), [2, 3]);
-    }
+  function drawMarks(chart) {
+    return (u) => {
+      const { left, top, width, height } = u.bbox;
+      for (const mark of chart.marks) {
+        const x = u.valToPos(mark.t_s, "x", true);
+        if (x >= left && x <= left + width) line(u, [x, top], [x, top + height], ink(LEVELS[mark.level]), [2, 3]);
+      }
+    };
   }
 
   function drawLimits(chart) {
@@ -128,7 +130,7 @@
       width, height: HEIGHT, axes, scales, padding: [8, right ? 0 : width < 500 ? 12 : 44, 0, 0],
       series: [{ label: "at", value: (u, value) => (value == null ? "–" : clock(value)) }, ...series],
       cursor: { sync: { key: "flight" }, drag: { x: true, y: false }, points: { size: 6 } },
-      hooks: { draw: [drawMarks, drawLimits(chart)], setScale: [zoomAll] },
+      hooks: { draw: [drawMarks(chart), drawLimits(chart)], setScale: [zoomAll] },
     };
   }
 

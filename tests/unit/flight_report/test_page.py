@@ -229,7 +229,7 @@ class TestPartialRecords:
         assert found.count("h1") == 1
         assert len(found.text) > 20
         data = json.loads(found.scripts[0])
-        assert set(data) == {"seconds", "marks", "charts"}
+        assert set(data) == {"seconds", "charts", "scene"}
         assert not re.search(r"\b(nan|inf)\b", " ".join(str(tag) for tag in found.tags))
         told = json.loads(report_json(flight))
         assert told["messages"] == flight.messages
@@ -268,7 +268,7 @@ class TestContent:
         assert margins[0] / 2 / 640 > 1.5 / 100
 
     def test_every_plot_has_its_numbers(self, flight: Flight) -> None:
-        data = chart_data(flight, flight.main_vehicle())
+        data = chart_data(flight, flight.shown_vehicles())
         assert [chart.id for chart in data.charts] == [
             *("height", "speed", "place", "battery", "link", "gps"),
         ]
@@ -281,7 +281,7 @@ class TestContent:
         turns = [(0.9999619, 0.0, 0.0, z) for z in (0.0087, -0.0087, 0.0087)]
         items = [PoseItem(1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), q) for q in turns]
         flight = scanned(tmp_path, items, 500 * MS)
-        heading = next(c for c in chart_data(flight, flight.main_vehicle()).charts if c.circle)
+        heading = next(c for c in chart_data(flight, flight.shown_vehicles()).charts if c.circle)
         values = [value for value in heading.lines[0].values if value is not None]
         assert max(values) - min(values) == pytest.approx(2.0, abs=0.2)
 

@@ -7,17 +7,19 @@ from pathlib import Path
 
 import pytest
 
+from gcs.flight_report.drift import drift_before
 from gcs.flight_report.facts import Clock, Fact, Pose, Sample
 from gcs.flight_report.findings.clock import ClockDetector
-from gcs.flight_report.findings.finding import Level
+from gcs.flight_report.findings.finding import Finding, Level
 from gcs.flight_report.findings.motors import MotorsDetector
 from gcs.flight_report.findings.wind import WindDetector
 from gcs.flight_report.flight import ParameterSeen, VehicleFlight
 from gcs.flight_report.mavlink_samples import version_text, wind
 from gcs.flight_report.parameters_html import differing, parameters
+from gcs.flight_report.render import page
 from gcs.flight_report.sampled import Sampled
 from gcs.flight_report.spectrum import SEGMENT, Spectrum
-from gcs.report import GeodeticItem, PoseItem, RecordItem
+from gcs.report import GeodeticItem, PoseItem, RecordItem, StatusItem
 from tests.unit.flight_report.facts_in_time import flying, found, levels
 from tests.unit.flight_report.test_scan import (
     UPRIGHT,
@@ -197,3 +199,48 @@ def test_the_mission_is_placed_by_a_position_that_is_known_in_both_frames(tmp_pa
         pytest.approx((3.0, 5.0 + 111.2, 22.0), abs=0.05),
         pytest.approx((3.0, 5.0, 22.0), abs=0.05),
     ]
+
+
+class TestDrift:
+    @staticmethod
+    def told(east_m: list[float], goals_m: list[float]) -> str:
+        """A second a place; the trouble comes with the last."""
+        vehicle = VehicleFlight(1)
+        place = vehicle.plots.sampled["place"]
+        vehicle.plots.sampled["wind"].take(0.0, 0, wind(6.0, 0.0).values, leads=True)
+        for number, (east, goal) in enumerate(zip(east_m, goals_m, strict=True)):
+            place.take(float(number), 3, (goal, 0.0, 5.0), leads=False)
+            place.take(float(number), 0, (east, 0.0, 5.0), leads=True)
+        trouble = Finding("gps", Level.WARNING, len(east_m) - 1.0, "the GPS lost its fix")
+        return drift_before(vehicle, trouble)
+
+    def test_who_is_blown_off_its_place(self) -> None:
+        told = self.told([0.0, 0.5, 1.5, 2.5], [0.0] * 4)
+        assert "drifted 2.5 m to the east" in told
+        assert "a wind of 6 m/s from the west" in told
+
+    def test_who_stays_or_is_on_its_way_does_not_drift(self) -> None:
+        assert self.told([0.0, 0.5, 0.2], [0.0] * 3) == ""
+        assert self.told([0.0, 3.0, 6.0], [12.0] * 3) == ""
+        assert self.told([0.0, 3.0, 6.0], [0.0, 12.0, 12.0]) == ""
+
+
+class TestSeveralVehicles:
+    def test_all_that_flew_are_on_one_page_unless_one_is_chosen(self, tmp_path: Path) -> None:
+        items: list[RecordItem] = []
+        for number in range(12):
+            for sysid in (1, 2):
+                landed = "IN_AIR" if number > 1 else "ON_GROUND"
+                at = (float(number), 10.0 * sysid, -5.0)
+                items.append(PoseItem(sysid, at, (1.0, 0.0, 0.0), UPRIGHT))
+                items.append(StatusItem(sysid, True, "OFFBOARD", landed, 90.0, 16.0, 200.0, 0.0))
+        flight = scanned(tmp_path, items, 250 * MS)
+        html = page(flight)
+        assert html.count("WHAT WENT WRONG".capitalize()) == html.count('class="lead"') == 2
+        assert 'id="path-1"' in html
+        assert 'id="path-2"' in html
+        assert html.count("<canvas") == 1
+        flight.chosen = 2
+        chosen = page(flight)
+        assert 'id="path"' in chosen
+        assert "Also in the record: Vehicle 1" in chosen
