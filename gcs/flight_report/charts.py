@@ -73,14 +73,14 @@ def chart_data(flight: Flight, vehicles: Sequence[VehicleFlight]) -> ChartData:
     charts = []
     for vehicle in vehicles:
         marks = [Mark(round(f.t_s, 2), f.level.value) for f in vehicle.went_wrong[:MAX_MARKS]]
-        for chart in _charts(vehicle):
+        for chart in charts_of(vehicle):
             if chart.lines:
                 chart.vehicle, chart.marks = vehicle.sysid, marks
                 charts.append(chart)
     return ChartData(round(flight.seconds, 2), charts, scene_of(flight, vehicles))
 
 
-def _charts(vehicle: VehicleFlight) -> list[Chart]:
+def charts_of(vehicle: VehicleFlight) -> list[Chart]:
     plots, autopilot = vehicle.plots, vehicle.autopilot
     rejected = REJECTED.get(autopilot, REJECTED["px4"]).value
     kind = autopilot if autopilot in FAIR else "ardupilot"

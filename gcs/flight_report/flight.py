@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import cos, radians
 
-from gcs.flight_report.facts import Build, Decision
+from gcs.flight_report.facts import Build, Decision, Fix, PlanItem
 from gcs.flight_report.findings.finding import WENT_WRONG, Check, Finding
 from gcs.flight_report.lanes import Lane
 from gcs.flight_report.sampled import COLUMNS, Sampled
@@ -14,6 +15,7 @@ from gcs.flight_report.track import Track
 from gcs.frames import Vec3
 from gcs.report import FenceShape
 
+EARTH_M = 6_371_000.0
 MAX_REQUESTS = 500
 MAX_TEXTS = 300
 MAX_VEHICLES = 6
@@ -118,6 +120,26 @@ class Plots:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """A place that is known both on the earth and in the record's local frame.
+
+    Others are told on a plane about it: a few kilometres away they are some decimetres off.
+    """
+
+    fix: Fix
+    enu: Vec3
+
+    def east_north_of(self, lat_deg: float, lon_deg: float) -> tuple[float, float]:
+        fix = self.fix
+        east_m = radians(lon_deg - fix.lon_deg) * EARTH_M * cos(radians(fix.lat_deg))
+        return self.enu[0] + east_m, self.enu[1] + radians(lat_deg - fix.lat_deg) * EARTH_M
+
+    def enu_of(self, item: PlanItem) -> Vec3:
+        up_m = item.alt_m - (self.fix.alt_rel_m if item.above_home else self.fix.alt_amsl_m)
+        return (*self.east_north_of(item.lat_deg, item.lon_deg), self.enu[2] + up_m)
+
+
 @dataclass(slots=True)
 class ParameterSeen:
     """A parameter: None is not known."""
@@ -153,6 +175,7 @@ class VehicleFlight:
     lanes: Lanes = field(default_factory=Lanes)
     plots: Plots = field(default_factory=Plots)
     track: Track = field(default_factory=Track)
+    anchor: Anchor | None = None
     plan: list[Vec3] = field(default_factory=list)
     """The places of its mission, east, north, up."""
     parameters: dict[str, ParameterSeen] = field(default_factory=dict)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
 
 import msgspec
 
 from gcs.flight_report import tables_html
-from gcs.flight_report.charts import ChartData, chart_data
+from gcs.flight_report.charts import Chart, ChartData, chart_data
 from gcs.flight_report.drift import drift_before
 from gcs.flight_report.findings.finding import Finding
 from gcs.flight_report.flight import Flight, VehicleFlight
@@ -41,15 +41,22 @@ def page(flight: Flight) -> str:
     """The whole page.  Everything that comes from the record is escaped."""
     vehicles = flight.shown_vehicles()
     data = chart_data(flight, vehicles)
+    head = _head(flight, vehicles)
+    body = "".join(_body(flight, vehicles, data))
+    return filled(flight.name, head, body, _foot(flight), data)
+
+
+def filled(title: str, head: str, body: str, foot: str, data: ChartData) -> str:
+    """A page of these parts, which are HTML but for the title and the foot."""
     licence = f"/* uPlot 1.6.32\n\n{_asset('uPlot.LICENSE')}*/"
     script = f"{licence}\n{_asset('uPlot.iife.min.js')}\n{_asset('report.js')}{_asset('scene.js')}"
     parts = {
-        "title": text(flight.name),
+        "title": text(title),
         "policy": _content_policy(script),
         "style": f"{_asset('uPlot.min.css')}\n{_asset('report.css')}",
-        "head": _head(flight, vehicles),
-        "body": "".join(_body(flight, vehicles, data)),
-        "foot": _foot(flight),
+        "head": head,
+        "body": body,
+        "foot": text(foot),
         "data": script_json(msgspec.json.encode(data)),
         "script": script,
     }
@@ -73,7 +80,7 @@ def _content_policy(script: str) -> str:
 def _body(flight: Flight, vehicles: list[VehicleFlight], data: ChartData) -> Iterator[str]:
     if len(vehicles) < 2:
         vehicle = vehicles[0] if vehicles else None
-        yield _verdict(flight, vehicle)
+        yield verdict(flight, vehicle)
         yield _notes(flight, vehicles)
         if vehicle is not None:
             yield _totals(vehicle)
@@ -82,16 +89,16 @@ def _body(flight: Flight, vehicles: list[VehicleFlight], data: ChartData) -> Ite
     for vehicle in vehicles:
         name = f"Vehicle {vehicle.sysid}"
         yield f'<h2 class="whose"><a href="#vehicle-{vehicle.sysid}">{name}</a></h2>'
-        yield _verdict(flight, vehicle)
+        yield verdict(flight, vehicle)
     yield _notes(flight, vehicles)
-    yield _scene(data)
+    yield scene_html(data)
     for vehicle in vehicles:
         yield f'<h2 class="whose" id="vehicle-{vehicle.sysid}">Vehicle {vehicle.sysid}</h2>'
         yield _totals(vehicle)
         yield from _sections(flight, vehicle, data, f"-{vehicle.sysid}")
 
 
-def _scene(data: ChartData) -> str:
+def scene_html(data: ChartData) -> str:
     if data.scene is None:
         return ""
     return (
@@ -130,7 +137,7 @@ def _sections(
             f"<figure>{p.svg}<figcaption>{text(p.caption)}</figcaption></figure>" for p in pictures
         )
         key = tables_html.path_key(vehicle, flight.fence)
-        scene = "" if suffix else _scene(data)
+        scene = "" if suffix else scene_html(data)
         add("path", "Path", f'<div class="pictures">{figures}</div>{key}{scene}')
     else:
         add("path", "Path", '<p class="quiet">The record has no position of this vehicle.</p>')
@@ -146,19 +153,7 @@ def _sections(
         if chart.vehicle == vehicle.sysid
     ]
     if charts:
-        plots = "".join(
-            f'<figure class="plot" data-chart="{number}"><h3>{text(chart.title)} '
-            f"<small>{text(chart.about)}</small></h3></figure>"
-            for number, chart in charts
-        )
-        note = (
-            '<noscript><p class="quiet">The plots need JavaScript.</p></noscript>'
-            '<p class="quiet screen-only">Drag over a plot to look closer, in all of them; '
-            "tap twice to see all.</p>"
-        )
-        spectrum = spectrum_figure(vehicle.spectrum)
-        drawn = f'{note}<div class="plots">{plots}{spectrum}</div>'
-        add("plots", "Plots", drawn)
+        add("plots", "Plots", plots_html(charts, spectrum_figure(vehicle.spectrum)))
     add("checks", "What was looked at", tables_html.checks(vehicle))
     set_to = parameters(vehicle)
     if set_to:
@@ -168,7 +163,22 @@ def _sections(
     return sections
 
 
-def _verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
+def plots_html(charts: Iterable[tuple[int, Chart]], more: str = "") -> str:
+    """Plots by their number in the page's data; `more` pictures after them."""
+    plots = "".join(
+        f'<figure class="plot" data-chart="{number}"><h3>{text(chart.title)} '
+        f"<small>{text(chart.about)}</small></h3></figure>"
+        for number, chart in charts
+    )
+    note = (
+        '<noscript><p class="quiet">The plots need JavaScript.</p></noscript>'
+        '<p class="quiet screen-only">Drag over a plot to look closer, in all of them; '
+        "tap twice to see all.</p>"
+    )
+    return f'{note}<div class="plots">{plots}{more}</div>'
+
+
+def verdict(flight: Flight, vehicle: VehicleFlight | None) -> str:
     """What happened, and what went wrong first: what is read when nothing else is."""
     asked = what_was_asked(vehicle) if vehicle else ""
     asked = f'<p class="asked">{text(asked)}</p>' if asked else ""
@@ -236,4 +246,4 @@ def _foot(flight: Flight) -> str:
     software = flight.metadata.get("mavgate", {})
     parts = [f"{key} {value}" for key, value in sorted(software.items()) if value]
     recorded = f"Recorded with mavgate: {', '.join(parts)}. " if parts else ""
-    return text(f"{recorded}Times count from the first message of the record.")
+    return f"{recorded}Times count from the first message of the record."

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
 
 import msgspec
 
@@ -12,7 +11,7 @@ from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.path_svg import FENCE_REACH
 from gcs.flight_report.projection import box_of
 from gcs.flight_report.summary import main_trouble
-from gcs.flight_report.track import TrackPoint
+from gcs.flight_report.track import Track, TrackPoint
 from gcs.frames import Vec3
 
 _LEAST_M = 6.0
@@ -25,6 +24,8 @@ class SceneTrack(msgspec.Struct):
     pieces: list[list[tuple[float, ...]]]
     plan: list[tuple[float, ...]]
     trouble: tuple[float, ...] | None = None
+    colour: str = ""
+    """A name of the style sheet's; without it the colour tells the time."""
 
 
 class SceneZone(msgspec.Struct):
@@ -44,42 +45,45 @@ class Scene(msgspec.Struct):
 
 def scene_of(flight: Flight, vehicles: Sequence[VehicleFlight]) -> Scene | None:
     """None where nothing flew that has a position."""
-    flown = [v for v in vehicles if v.track.points and v.totals.take_offs]
-    places = [point.enu for v in flown for point in v.track.points]
+    flown = [v for v in vehicles if v.totals.take_offs]
+    scene = scene_of_tracks([(f"vehicle {v.sysid}", v.track, v.plan) for v in flown])
+    if scene is None:
+        return None
+    for zone in flight.fence.zones:
+        outline = zone_outline(zone)
+        box = box_of((corner[0], corner[1]) for corner in outline)
+        if box is not None and max(box.width, box.height) <= 2 * FENCE_REACH * scene.radius:
+            corners = [_rounded(corner) for corner in outline]
+            zone_ = SceneZone(zone.inclusion, corners, zone.floor_up_m, zone.ceiling_up_m)
+            scene.zones.append(zone_)
+    drawn = (v for v in flown if v.track.points)
+    for track, vehicle in zip(scene.tracks, drawn, strict=True):
+        trouble = main_trouble(vehicle)
+        if trouble is not None:
+            track.trouble = _rounded(_at(vehicle.track.points, trouble.t_s))
+    return scene
+
+
+def scene_of_tracks(tracks: Sequence[tuple[str, Track, Sequence[Vec3]]]) -> Scene | None:
+    """Names, paths and plans; None where no path has a place."""
+    known = [each for each in tracks if each[1].points]
+    places = [point.enu for _, track, _ in known for point in track.points]
     if not places:
         return None
     low, high = (tuple(f(p[i] for p in places) for i in range(3)) for f in (min, max))
     radius_m = max(_LEAST_M, *(b - a for a, b in zip(low, high, strict=True))) / 2
-    zones = []
-    for zone in flight.fence.zones:
-        outline = zone_outline(zone)
-        box = box_of((corner[0], corner[1]) for corner in outline)
-        if box is not None and max(box.width, box.height) <= 2 * FENCE_REACH * radius_m:
-            corners = [_rounded(corner) for corner in outline]
-            zones.append(SceneZone(zone.inclusion, corners, zone.floor_up_m, zone.ceiling_up_m))
-    first_s = min((v.track.points[0].t_s for v in flown), default=inf)
-    last_s = max(v.track.points[-1].t_s for v in flown)
     centre = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
-    return Scene(
-        [_track(v, first_s, max(last_s - first_s, 1e-3)) for v in flown],
-        zones,
-        _rounded(centre),
-        round(radius_m, 2),
-    )
+    return Scene([_track(*each) for each in known], [], _rounded(centre), round(radius_m, 2))
 
 
-def _track(vehicle: VehicleFlight, first_s: float, length_s: float) -> SceneTrack:
+def _track(name: str, track: Track, plan: Sequence[Vec3]) -> SceneTrack:
+    first_s, last_s = track.points[0].t_s, track.points[-1].t_s
+    length_s = max(last_s - first_s, 1e-3)
     pieces = [
         [(*_rounded(p.enu), round((p.t_s - first_s) / length_s, 3)) for p in piece]
-        for piece in vehicle.track.drawn()
+        for piece in track.drawn()
     ]
-    trouble = main_trouble(vehicle)
-    return SceneTrack(
-        f"vehicle {vehicle.sysid}",
-        pieces,
-        [_rounded(enu) for enu in vehicle.plan],
-        None if trouble is None else _rounded(_at(vehicle.track.points, trouble.t_s)),
-    )
+    return SceneTrack(name, pieces, [_rounded(enu) for enu in plan])
 
 
 def _at(points: Sequence[TrackPoint], t_s: float) -> Vec3:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import cos, radians
 from typing import TypeAlias
 
 from gcs.flight_report.facts import (
@@ -15,35 +14,17 @@ from gcs.flight_report.facts import (
     Pose,
     Sample,
 )
-from gcs.flight_report.flight import ParameterSeen, VehicleFlight
+from gcs.flight_report.flight import Anchor, ParameterSeen, VehicleFlight
 from gcs.frames import Vec3
 
-EARTH_M = 6_371_000.0
 MAX_PLAN = 2_000
 
 Told: TypeAlias = Sample | Acceleration | Build | Parameter | Fix | PlanItem
 
 
-@dataclass(frozen=True, slots=True)
-class _Anchor:
-    """A place that is known both on the earth and in the record's local frame."""
-
-    fix: Fix
-    enu: Vec3
-
-    def enu_of(self, item: PlanItem) -> Vec3:
-        """On a plane about the anchor: a few kilometres away it is some decimetres off."""
-        fix = self.fix
-        east_m = radians(item.lon_deg - fix.lon_deg) * EARTH_M * cos(radians(fix.lat_deg))
-        north_m = radians(item.lat_deg - fix.lat_deg) * EARTH_M
-        up_m = item.alt_m - (fix.alt_rel_m if item.above_home else fix.alt_amsl_m)
-        return (self.enu[0] + east_m, self.enu[1] + north_m, self.enu[2] + up_m)
-
-
 @dataclass(slots=True)
 class Shown:
     flight: VehicleFlight
-    _anchor: _Anchor | None = None
     _plan: dict[int, PlanItem] = field(default_factory=dict)
     _has_attitude: bool = False
 
@@ -65,8 +46,8 @@ class Shown:
             case Parameter(name, value, default):
                 flight.parameters.setdefault(name, ParameterSeen()).told(t_s, value, default)
             case Fix():
-                if self._anchor is None and here is not None:
-                    self._anchor = _Anchor(fact, here)
+                if flight.anchor is None and here is not None:
+                    flight.anchor = Anchor(fact, here)
             case PlanItem(seq=seq):
                 if len(self._plan) < MAX_PLAN:
                     self._plan[seq] = fact
@@ -79,5 +60,6 @@ class Shown:
             sampled["attitude"].take(t_s, 0, angles, leads=True)
 
     def finish(self) -> None:
-        if self._anchor is not None:
-            self.flight.plan = [self._anchor.enu_of(item) for _, item in sorted(self._plan.items())]
+        anchor = self.flight.anchor
+        if anchor is not None:
+            self.flight.plan = [anchor.enu_of(item) for _, item in sorted(self._plan.items())]

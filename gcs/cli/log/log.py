@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gcs.cli.log.audit import audit, sign
+from gcs.cli.log.compare import compare
 from gcs.cli.log.import_export import cannot_write, export_log, import_log
 from gcs.cli.log.replay import replay
 from gcs.cli.log.report import report
@@ -36,6 +37,7 @@ def log() -> None:
 for command in (
     audit,
     compact,
+    compare,
     cut,
     export_log,
     import_log,

@@ -57,7 +57,7 @@ def report(
     file = one_record(file, last=last)
     if output is None and not as_json:
         output = file.with_suffix(".html")
-    if output is not None and _same(file, output):
+    if output is not None and same_file(file, output):
         raise click.UsageError(f"{output}: the page would overwrite the record")
     with told(file), reading_progress(file, "reading") as progress:
         flight = scan(file, progress)
@@ -68,7 +68,7 @@ def report(
         )
     flight.chosen = vehicle
     if output is not None:
-        _write(output, page(flight))
+        write_page(output, page(flight))
     if as_json:
         click.echo(report_json(flight).decode())
         return
@@ -84,11 +84,11 @@ def report(
     click.echo(f"{output}: open it in a browser")
 
 
-def _same(file: Path, output: Path) -> bool:
+def same_file(file: Path, output: Path) -> bool:
     return output.exists() and os.path.samefile(file, output)
 
 
-def _write(output: Path, html: str) -> None:
+def write_page(output: Path, html: str) -> None:
     """Whole or not at all: a reader never finds half a page."""
     beside = output.with_name(f".{output.name}.{os.getpid()}")
     try:

@@ -81,7 +81,7 @@
         }
       }
       for (const piece of track.pieces) {
-        for (let i = 1; i < piece.length; i += 1) lines([piece[i - 1], piece[i]], colour(piece[i][3]), 2.5);
+        for (let i = 1; i < piece.length; i += 1) lines([piece[i - 1], piece[i]], track.colour ? ink(track.colour) : colour(piece[i][3]), 2.5);
       }
       const end = track.pieces.flat().at(-1);
       if (scene.tracks.length > 1 && end) label(end, track.name, ink("--ink"));
