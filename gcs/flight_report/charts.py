@@ -9,7 +9,7 @@ import msgspec
 
 from gcs.flight_report.findings.limits import BAD, FAIR, HDOP_BAD, REJECTED
 from gcs.flight_report.flight import Flight, VehicleFlight
-from gcs.flight_report.sampled import WANTED
+from gcs.flight_report.sampled import MOTORS, MOTORS_OF, WANTED
 from gcs.flight_report.scene import Scene, scene_of
 from gcs.flight_report.series import Series
 
@@ -179,7 +179,8 @@ def _sampled(vehicle: VehicleFlight) -> Iterator[Chart]:
         rate = Chart(f"{axis}-rate", f"{axis.capitalize()} rate", "dashed: what was wanted")
         yield _chart(rate, series["rates"], *_wanted("°/s", columns))
     motors = Chart("motors", "Motors", "what each is told to give", low=0.0)
-    names = ((name, column) for column, name in enumerate(series["motors"].names))
+    turning = MOTORS_OF.get(vehicle.kind, MOTORS)
+    names = ((name, column) for column, name in enumerate(series["motors"].names[:turning]))
     yield _chart(motors, series["motors"], *(Line(name, "%", column=c) for name, c in names))
     sticks = Chart("sticks", "Sticks", "of the pilot")
     names = ((name, column) for column, name in enumerate(series["sticks"].names))
@@ -219,6 +220,8 @@ def _chart(chart: Chart, series: Series, *lines: Line) -> Chart:
         line.values = [_rounded(values[column]) for _, values in rows]
         if any(value is not None for value in line.values):
             chart.lines.append(line)
+    if not any(line.dashed for line in chart.lines):
+        chart.about = chart.about.partition("dashed:")[0].rstrip("; ")
     if not any(any(line.values) for line in chart.lines):
         chart.lines = []  # noughts throughout are what an import writes that was told nothing
     if chart.lines:

@@ -15,6 +15,8 @@ _WANTED = tuple(f"{axis} wanted" for axis in _AXES)
 WANTED = 3
 """Where in "attitude", "rates" and "place" the columns of what was wanted begin."""
 MOTORS = 8
+MOTORS_OF = {"quadrotor": 4, "hexarotor": 6, "octorotor": 8, "tricopter": 3}
+"""By the kind of vehicle: what else is driven has the channels after them."""
 
 COLUMNS: Mapping[str, tuple[str, ...]] = {
     "attitude": (*_AXES, *_WANTED),  # degrees

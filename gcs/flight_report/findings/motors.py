@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from gcs.flight_report.facts import Fact, Pose, Sample
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
+from gcs.flight_report.sampled import MOTORS, MOTORS_OF
 
 _OWN = "this project's own choice; of 14 good flights the most is 5"
 UNEVEN = Limit(8.0, "%", _OWN)
@@ -28,7 +29,6 @@ LEANT_DEG = 8.0
 _LEAST_SAMPLES = 4
 _IN_USE = 5.0
 """Per cent: a channel that never gives so much is no motor."""
-_MOTORS_OF = {"quadrotor": 4, "hexarotor": 6, "octorotor": 8, "tricopter": 3}
 
 
 @dataclass(slots=True)
@@ -82,7 +82,7 @@ class MotorsDetector:
             self.hover.rest()
             self.second.rest()
             return
-        values = fact.values[: _MOTORS_OF.get(now.kind, len(fact.values))]
+        values = fact.values[: MOTORS_OF.get(now.kind, MOTORS)]
         ended = self.second.add(now.t_s, values)
         if ended is not None:
             self._second(*ended)

@@ -61,7 +61,8 @@
       lines([[e0 - reach, n0 + at, ground], [e0 + reach, n0 + at, ground]], ink("--line"), 1);
     }
     label([e0, n0 + reach, ground], "north", ink("--soft"));
-    label([e0 + reach, n0, ground], "east, a square is " + step + " m", ink("--soft"));
+    label([e0 + reach, n0, ground], "east", ink("--soft"));
+    ctx.fillText("a square is " + step + " m", 10, height - 10);
     for (const zone of scene.zones) {
       const style = ink(zone.inclusion ? "--good" : "--bad");
       for (const level of new Set([zone.floor ?? ground, zone.ceiling ?? ground])) {
