@@ -56,6 +56,10 @@ class Screen:
                 return time.perf_counter() - start_s
         return float("inf")
 
+    def rest(self, for_s: float) -> None:
+        """Read on meanwhile, as every terminal does: else the next key waits for a full pipe."""
+        self.until(rb"(?!)", for_s)
+
     def last(self, pattern: bytes) -> bytes:
         """What the pattern's group was when it was read last."""
         found: list[bytes] = re.findall(pattern, ESCAPES.sub(b"", self._seen))
@@ -79,15 +83,15 @@ def measured(columns: int, rows: int, keys: int) -> list[float]:
         screen = Screen(argv, columns, rows)
         try:
             assert screen.until(b"GROUNDED", 30.0) < 30.0, "no vehicle on the ground"
-            time.sleep(3.0)
+            screen.rest(3.0)
             screen.press(b"m")
             assert screen.until(b"arm: complete", 10.0) < 10.0, "not armed"
             screen.press(b"t")
             assert screen.until(b"takeoff 1.5: complete", 20.0) < 20.0, "not up"
             screen.press(b"x\x1b[C")
             screen.until(PENDING)
-            time.sleep(1.0)
             took, shown = [], screen.last(PENDING)
+            screen.rest(1.0)
             for n in range(keys):
                 right = n // 8 % 2 == 0
                 screen.press(b"\x1b[C" if right else b"\x1b[D")
@@ -96,7 +100,7 @@ def measured(columns: int, rows: int, keys: int) -> list[float]:
                 wanted = rb"pending E (?!" + re.escape(shown) + rb")([+-][0-9.]+)"
                 took.append(screen.until(wanted))
                 shown = screen.last(PENDING)
-                time.sleep(PAUSE_S)
+                screen.rest(PAUSE_S)
             return took
         finally:
             screen.end()
