@@ -1,6 +1,6 @@
 """The operator's own rule (`gcs fly --verifier FILE`): asked for every go-to before the gate is.
 
-It can only refuse.  A go-to that the gate would keep until its tick waits here.  At the tick, one
+It can only refuse.  A go-to that the gate does not refuse at once waits here.  At the tick, one
 that the gate would refuse goes to the gate, which says why; for any other one the rule is asked.
 What it permits goes to the gate at the tick after, and is judged there as if there were no rule.
 What it refuses, or has not answered in time, never reaches the gate.
@@ -14,7 +14,7 @@ from typing import Final
 
 from gcs.enu_text import labelled_enu
 from gcs.frames import enu_from_ned
-from gcs.gate.effects import Level, Ruling
+from gcs.gate.effects import Level, Ruling, Verdict
 from gcs.gate.inputs import Input, Requested
 from gcs.gate.machine.gate import GOALS_WAIT_IN, Gate
 from gcs.gate.refusal import Code, Refusal
@@ -52,7 +52,7 @@ class OwnRule:
         """What follows from a go-to that waits from now on; None where `given` is for the gate."""
         if not isinstance(given, Requested) or not isinstance(given.request, GoTo):
             return None
-        if gate.would(given.request, given.source, now_ns, at_once=True) is not None:
+        if _refuses(gate.would(given.request, given.source, now_ns, at_once=True)):
             return None
         newer = Refusal(Code.SUPERSEDED, "a newer request came before the tick")
         work = self._ended(Ruling.SUPERSEDED, newer)
@@ -69,8 +69,7 @@ class OwnRule:
         if waiting is None:
             return None, []
         if waiting.until_ns is None:
-            verdict = gate.would(waiting.goal, waiting.requested.source, now_ns)
-            refused = verdict is not None and verdict.ruling is Ruling.REFUSED
+            refused = _refuses(gate.would(waiting.goal, waiting.requested.source, now_ns))
             if not refused and pos_ned is None:
                 return None, self._refused(Refusal(Code.NO_POSITION, "there is no position yet"))
             if not refused and pos_ned is not None:
@@ -117,3 +116,7 @@ class OwnRule:
             return []
         request_id, goal_ned = waiting.requested.request_id, waiting.goal.goal_ned
         return [GiveVerdict(request_id, ruling, refusal, refusal.numbers, goal_ned)]
+
+
+def _refuses(verdict: Verdict | None) -> bool:
+    return verdict is not None and verdict.ruling is Ruling.REFUSED
