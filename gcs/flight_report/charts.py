@@ -218,7 +218,9 @@ def _chart(chart: Chart, series: Series, *lines: Line) -> Chart:
     for number, line in enumerate(lines):
         column = line.column if line.column >= 0 else number
         line.values = [_rounded(values[column]) for _, values in rows]
-        if any(value is not None for value in line.values):
+        # Noughts throughout are no wish that was told.
+        wish = line.label.endswith("wanted")
+        if any(line.values) or (not wish and any(value is not None for value in line.values)):
             chart.lines.append(line)
     if not any(line.dashed for line in chart.lines):
         chart.about = chart.about.partition("dashed:")[0].rstrip("; ")
