@@ -1,7 +1,8 @@
 """Pictures of the keyboard screen in flight, as SVG: `python tools/screenshots.py [FOLDER]`.
 
 Flies `vehicle-sim` with a real station, without a terminal, and saves what the screen shows:
-a refusal before Enter, a mission with its path and its items, GPS lost with its alarm, typed lines.
+a refusal before Enter, a mission with its path and its items, GPS lost with its alarm, typed lines,
+three vehicles.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from pathlib import Path
 
 from textual.pilot import Pilot
 
-from gcs.config import StationConfig
+from gcs.config import SimConfig, StationConfig
 from gcs.operator.client import StationClient
 from gcs.tui.app import FlyApp
 from gcs.tui.result import until_hello
@@ -79,6 +80,55 @@ async def flown(columns: int, rows: int, folder: Path, shots: set[str]) -> None:
             vehicle.wait()
 
 
+async def fleet(folder: Path) -> None:
+    """Three vehicles: of two goals that cross the second one would be refused."""
+    with tempfile.TemporaryDirectory() as logs:
+        station = StationClient.start(
+            StationConfig(sim=SimConfig(count=3), fleet=True, log_dir=logs)
+        )
+        app = FlyApp(station, until_hello(station))
+        try:
+            async with app.run_test(size=(120, 40)) as pilot:
+                await crossing(app, pilot)
+                app.redraw()
+                await pilot.pause(0.3)
+                path = folder / "screen-120x40-fleet.svg"
+                path.write_text(app.export_screenshot(title="gcs fly"))
+                print(path)
+        finally:
+            station.close()
+
+
+async def crossing(app: FlyApp, pilot: Pilot[None]) -> None:
+    async def say(text: str, until_it: str = "") -> None:
+        await typed(pilot, text)
+        await pilot.press("enter")
+        if until_it:
+            await until(app, pilot, lambda: decided(app, until_it))
+
+    await until(app, pilot, lambda: bool(app.scene.snapshot and app.scene.snapshot.others))
+    await until(app, pilot, lambda: state(app) == "GROUNDED")
+    await pilot.pause(3.0)
+    for number in (2, 3, 1):
+        await say(f"vehicle {number}")
+        await until(app, pilot, lambda: state(app) == "GROUNDED")
+        await say("arm", f"vehicle {number}: arm: complete")
+        await say("takeoff 5", f"vehicle {number}: takeoff 5: complete")
+    for number, goal in ((2, "20 0 5"), (3, "0 20 5")):
+        await say(f"vehicle {number}")
+        await until(app, pilot, lambda: state(app) == "HOVERING")
+        await say(f"goto {goal}", f"vehicle {number}: goto {goal}: complete")
+    await say("vehicle 1")
+    await until(app, pilot, lambda: state(app) == "HOVERING")
+    await say("speed 1", "vehicle 1: speed 1: complete")
+    await say("goto 20 20 5", "vehicle 1: goto 20 20 5: accepted")
+    await say("vehicle 2")
+    await until(app, pilot, lambda: state(app) == "HOVERING")
+    await pilot.press("n")
+    await typed(pilot, "goto -5 15 5")
+    await pilot.pause(1.5)
+
+
 async def flight(app: FlyApp, pilot: Pilot[None], folder: Path, name: str, shots: set[str]) -> None:
     async def shot(what: str) -> None:
         if what in shots:
@@ -130,6 +180,7 @@ def main() -> None:
     asyncio.run(flown(80, 24, folder, {*every, "line", "typed", "items"}))
     asyncio.run(flown(120, 40, folder, {*every, "items"}))
     asyncio.run(flown(200, 60, folder, every))
+    asyncio.run(fleet(folder))
 
 
 if __name__ == "__main__":

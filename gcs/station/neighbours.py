@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from gcs import ipc
 from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.projection import Projection
@@ -11,14 +13,16 @@ from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
 
 
-def in_frame_of(here: Telemetry, there: Telemetry, pos_ned: Vec3) -> Vec3 | None:
-    """A place in the local frame of `there` in the one of `here`; None where one is not known."""
+def into_frame_of(here: Telemetry, there: Telemetry) -> Callable[[Vec3], Vec3] | None:
+    """Of a place in the local frame of `there` makes the one in that of `here`; None where one of
+    the frames is not known."""
     if here.origin is None or there.origin is None:
         return None
     if (here.origin, here.autopilot.name) == (there.origin, there.autopilot.name):
-        return pos_ned
-    geodetic = Projection(there.origin, there.autopilot.name).geodetic_from_ned(pos_ned)
-    return Projection(here.origin, here.autopilot.name).ned_from_geodetic(*geodetic)
+        return lambda pos_ned: pos_ned
+    theirs = Projection(there.origin, there.autopilot.name)
+    ours = Projection(here.origin, here.autopilot.name)
+    return lambda pos_ned: ours.ned_from_geodetic(*theirs.geodetic_from_ned(pos_ned))
 
 
 def others_of(vehicles: Vehicles, vehicle: Vehicle | None) -> list[ipc.OtherVehicle]:
@@ -51,5 +55,5 @@ def _row(here: Telemetry | None, other: Vehicle, there: Telemetry) -> ipc.OtherV
 def _place_enu(here: Telemetry | None, there: Telemetry, pos_ned: Vec3 | None) -> Vec3 | None:
     if here is None or pos_ned is None:
         return None
-    seen_ned = in_frame_of(here, there, pos_ned)
-    return None if seen_ned is None else enu_from_ned(seen_ned)
+    moved = into_frame_of(here, there)
+    return None if moved is None else enu_from_ned(moved(pos_ned))

@@ -1,24 +1,25 @@
 """Whether the vehicles of one session come too close to each other.
 
 Looked at with every position of one that flies, against all others that fly: as a condition of
-both.  And with every goal, before the gate sees it: its leg is compared with what the others fly,
-to their goals or where they hover, whenever each is there.  Each position is in its own vehicle's
+both.  And with every goal, before the gate sees it: its leg is compared with what the others fly
+(`ways.py`), whenever each is there.  Each position is in its own vehicle's
 frame, so it goes through latitude and longitude where the frames differ.  A vehicle without an
 origin or a fresh position is compared with nobody: that it lacks them is a condition of its own.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from gcs.frames import Vec3
 from gcs.gate.airspace.separation import Track, between_legs_m, closest_approach, is_too_close
 from gcs.gate.condition import Condition
 from gcs.gate.policy.policy import SeparationLimits
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import GoTo
-from gcs.gate.states import State
 from gcs.session.work import ForOwner, Work, condition
-from gcs.station.neighbours import in_frame_of
+from gcs.station.neighbours import into_frame_of
 from gcs.station.vehicles import Vehicles
+from gcs.station.ways import Leg, legs_of
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
 
@@ -52,13 +53,13 @@ class Separation:
             there = None if number == slot else other.flying(now_ns)
             if there is None or there.pos_ned is None:
                 continue
-            start = in_frame_of(here, there, there.pos_ned)
-            end = in_frame_of(here, there, _end_of(other, there.pos_ned))
-            if start is None or end is None:
+            moved = into_frame_of(here, there)
+            if moved is None:
                 continue
+            legs = [(moved(a), moved(b)) for a, b in legs_of(other, there.pos_ned)]
             wrong_m = (here.health.accuracy_h_m or 0.0) + (there.health.accuracy_h_m or 0.0)
-            now_m = between_legs_m(here.pos_ned, here.pos_ned, start, end) - wrong_m
-            least_m = max(0.0, between_legs_m(here.pos_ned, goal_ned, start, end) - wrong_m)
+            now_m = _least_m(here.pos_ned, here.pos_ned, legs) - wrong_m
+            least_m = max(0.0, _least_m(here.pos_ned, goal_ned, legs) - wrong_m)
             if least_m < min(self._limits.least_m, now_m - LESS_M):
                 return self._refusal(other, least_m)
         return None
@@ -97,9 +98,10 @@ class Separation:
         if here is None or there is None:
             return ""
         assert there.pos_ned is not None
-        seen_from_here = in_frame_of(here, there, there.pos_ned)
-        if seen_from_here is None or here.pos_ned is None:
+        moved = into_frame_of(here, there)
+        if moved is None or here.pos_ned is None:
             return ""
+        seen_from_here = moved(there.pos_ned)
         limits = self._limits
         approach = closest_approach(
             _track(here, here.pos_ned, now_ns),
@@ -114,20 +116,9 @@ class Separation:
         )
 
 
-def _end_of(vehicle: Vehicle, pos_ned: Vec3) -> Vec3:
-    """Where what it flies ends, as verified: a goal that waits for its tick, the goal, the top of
-    its climb, the ground below a landing, where it hovers; else where it is."""
-    memory = vehicle.gate.memory
-    pending = memory.pending.request if memory.pending else None
-    if isinstance(pending, GoTo):
-        return pending.goal_ned
-    if memory.goal is not None:
-        return memory.goal.pos_ned
-    if memory.state is State.TAKING_OFF:
-        return memory.top_ned
-    if memory.state is State.LANDING:
-        return (pos_ned[0], pos_ned[1], max(pos_ned[2], memory.ground_down_m or 0.0))
-    return pos_ned if memory.hold is None else memory.hold.pos_ned
+def _least_m(start: Vec3, end: Vec3, legs: Iterable[Leg]) -> float:
+    """From a leg to the nearest of those."""
+    return min(between_legs_m(start, end, *leg) for leg in legs)
 
 
 def _track(telemetry: Telemetry, pos_ned: Vec3, now_ns: int) -> Track:

@@ -8,6 +8,7 @@ from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.session import inputs
 from tests.loopback.fleet import Fleet
+from tests.loopback.flight import MISSIONS
 
 APART_M = 60.0
 """Vehicle 2 starts so far east of vehicle 1; both fly 5 m up."""
@@ -50,6 +51,32 @@ def test_of_two_goals_whose_legs_cross_the_second_is_refused() -> None:
     flight.reaches(1, State.HOVERING, 60.0)
     flight.reaches(2, State.HOVERING, 60.0)
     assert flight.send(2, (-55.0, 0.0, 25.0)).outcome == "accepted", "20 m above where it was"
+
+
+def test_the_circle_that_another_one_flies_is_in_the_way() -> None:
+    """Vehicle 2 flies round its start, 12 m from it and 60 m east of vehicle 1."""
+    flight = Crossing()
+    circle = ipc.Circle((0.0, 0.0, 5.0), radius_m=12.0, speed_m_s=1.0, turns=0.0)
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(1001, "orbit", orbit=circle, vehicle=2)))
+    flight.reaches(2, State.STREAMING)
+    flight.run(1.0)
+    refused = flight.send(1, (APART_M, 0.0, 5.0))
+    assert refused.code == "OTHER_VEHICLE", "its middle, across the circle"
+    assert flight.send(1, (APART_M - 16.0, 0.0, 5.0)).code == "OTHER_VEHICLE", "4 m beside it"
+    assert flight.send(1, (APART_M - 19.0, 0.0, 5.0)).outcome == "accepted", "7 m beside it"
+
+
+def test_all_of_the_mission_that_another_one_flies_is_in_the_way() -> None:
+    """Its waypoints are at most 4 m from the start of vehicle 2, 2 to 3 m up."""
+    flight = Crossing()
+    for number, word in ((1001, "mission_upload"), (1002, "mission_start")):
+        path = str(MISSIONS / "demo.toml") if word == "mission_upload" else ""
+        flight.feed(inputs.OperatorLine(1, ipc.Ask(number, word, path=path, vehicle=2)))
+        if path:
+            assert flight.done(number) == "complete", flight.told()
+    flight.reaches(2, State.FLYING_MISSION)
+    assert flight.send(1, (APART_M + 4.0, 8.0, 3.0)).code == "OTHER_VEHICLE"
+    assert flight.send(1, (APART_M - 10.0, 8.0, 3.0)).outcome == "accepted"
 
 
 def test_two_goals_of_one_moment_are_compared_too() -> None:

@@ -36,7 +36,7 @@ def return_path(
     refusal = return_refusal(bounds, pos_ned, home_ned, return_up_m, name)
     if refusal is not None:
         return refusal
-    top_ned, over_ned = _way_home(pos_ned, home_ned, return_up_m)
+    top_ned, over_ned = way_home(pos_ned, home_ned, return_up_m)
     numbers = clearance_numbers(bounds.judge, "leg", top_ned, over_ned)
     return Cleared((*numbers, ("leg_m", math.dist(top_ned, over_ned))))
 
@@ -51,7 +51,7 @@ def return_refusal(
     and descends.  A return makes it safer, so no margin is asked for, only that it stays inside
     for certain.  The floor does not apply: a return ends on the ground.
     """
-    top_ned, over_ned = _way_home(pos_ned, home_ned, return_up_m)
+    top_ned, over_ned = way_home(pos_ned, home_ned, return_up_m)
     way = "the way home" if name == HOME else f"the way to {name}"
     blocked = (
         bounds.unusable(position=pos_ned, home=home_ned, height=(return_up_m,))
@@ -71,7 +71,7 @@ def _clear_leg(bounds: Bounds, subject: str, a_ned: Vec3, b_ned: Vec3) -> Refusa
     return bounds.judge.leg(subject, a_ned, b_ned, NO_MARGINS, floor_applies=False)
 
 
-def _way_home(pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> tuple[Vec3, Vec3]:
+def way_home(pos_ned: Vec3, home_ned: Vec3, return_up_m: float) -> tuple[Vec3, Vec3]:
     """The ends of the straight leg: above the vehicle, and above home."""
     down_m = min(pos_ned[2], home_ned[2] - return_up_m)
     return (*pos_ned[:2], down_m), (*home_ned[:2], down_m)

@@ -1,0 +1,63 @@
+"""What a vehicle flies, as verified: legs in its own local frame, from where it is."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Final
+
+from gcs.frames import Vec3
+from gcs.gate.airspace.questions.returns import way_home
+from gcs.gate.machine.memory import Memory
+from gcs.gate.requests import GoTo
+from gcs.gate.states import State
+from gcs.orbit.circle import Orbit
+from gcs.vehicle.vehicle import Vehicle
+
+Leg = tuple[Vec3, Vec3]
+CHORD_OFF_M: Final = 0.1
+"""How far a circle may lie beside the legs that stand for it."""
+
+
+def legs_of(vehicle: Vehicle, pos_ned: Vec3) -> list[Leg]:
+    """To a goal that waits for its tick, to the goal, up a climb, down a landing, round an orbit,
+    along all of a mission, to each place where a return may end; else only where it is or hovers.
+    """
+    memory = vehicle.gate.memory
+    if memory.state is State.STREAMING and vehicle.orbits.flown is not None:
+        circle = _round(vehicle.orbits.flown.guidance.orbit)
+        nearest = min(circle, key=lambda point: math.dist(point, pos_ned))
+        return [(pos_ned, nearest), *pairwise(circle)]
+    if memory.state is State.FLYING_MISSION and vehicle.missions.path_ned:
+        path_ned = vehicle.missions.path_ned
+        return [(pos_ned, pos_ned), *pairwise((path_ned[0], *path_ned))]
+    if memory.state is State.RETURNING and memory.return_up_m is not None:
+        return [leg for way in _home(memory, pos_ned, memory.return_up_m) for leg in pairwise(way)]
+    return [(pos_ned, _end_of(memory, pos_ned))]
+
+
+def _end_of(memory: Memory, pos_ned: Vec3) -> Vec3:
+    pending = memory.pending.request if memory.pending else None
+    if isinstance(pending, GoTo):
+        return pending.goal_ned
+    if memory.goal is not None:
+        return memory.goal.pos_ned
+    if memory.state is State.TAKING_OFF:
+        return memory.top_ned
+    if memory.state is State.LANDING:
+        return (pos_ned[0], pos_ned[1], max(pos_ned[2], memory.ground_down_m or 0.0))
+    return pos_ned if memory.hold is None else memory.hold.pos_ned
+
+
+def _round(orbit: Orbit) -> list[Vec3]:
+    """Closed, with chords that are off by CHORD_OFF_M at most."""
+    count = math.ceil(math.pi / math.acos(1.0 - CHORD_OFF_M / orbit.radius_m))
+    return [orbit.point_ned(2.0 * math.pi * n / count) for n in range(count + 1)]
+
+
+def _home(memory: Memory, pos_ned: Vec3, return_up_m: float) -> list[tuple[Vec3, ...]]:
+    ways: list[tuple[Vec3, ...]] = []
+    for to in memory.returns_to:
+        top_ned, over_ned = way_home(pos_ned, to.ground_ned, max(return_up_m, to.over_up_m))
+        ways.append((pos_ned, top_ned, over_ned, to.ground_ned))
+    return ways or [(pos_ned, pos_ned)]
