@@ -48,6 +48,7 @@ def report(
     from gcs.flight_report.render import page
     from gcs.flight_report.scan import scan
     from gcs.flight_report.summary import (
+        other_vehicles,
         what_happened,
         what_is_damaged,
         what_was_before,
@@ -81,6 +82,10 @@ def report(
     )
     for line in filter(None, said):
         click.echo(line)
+    if shown is not None and (others := other_vehicles(flight, [shown])):
+        click.echo(f"This is vehicle {shown.sysid}; --vehicle chooses another one.")
+        for line in others:
+            click.echo(f"Also in the record: {line}")
     click.echo(f"{output}: open it in a browser")
 
 

@@ -42,7 +42,10 @@ def test_another_vehicle_of_a_fleet(tmp_path: Path) -> None:
     poses = [PoseItem(n, (0.0, 0.0, -5.0 * n), (0.0, 0.0, 0.0), upright) for n in (1, 2)]
     path = record(tmp_path, [*states, *poses], step_ns=400 * MS)
     page = tmp_path / "two.html"
-    assert gcs("log", "report", path, "--vehicle", "2", "-o", page).exit_code == 0
+    ended = gcs("log", "report", path, "--vehicle", "2", "-o", page)
+    assert ended.exit_code == 0
+    assert "This is vehicle 2;" in ended.output
+    assert "Also in the record: Vehicle 1" in ended.output
     html = page.read_text(encoding="utf-8")
     assert "vehicle 2</li>" in html
     assert "Also in the record: Vehicle 1" in html
