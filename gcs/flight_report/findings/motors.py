@@ -8,15 +8,16 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
+from math import inf
 
 from gcs.flight_report.facts import Fact, Pose, Sample
 from gcs.flight_report.findings.finding import Check, Finding, Level, Limit, Result, Situation
 from gcs.flight_report.sampled import MOTORS, MOTORS_OF
 
-_OWN = "this project's own choice; of 14 good flights the most is 5"
+_OWN = "this project's own choice"
 UNEVEN = Limit(8.0, "%", _OWN)
 """Between the motor that gives most and that which gives least, on the mean of `WINDOW_S`."""
-TORN = Limit(40.0, "%", "this project's own choice; of 14 good flights the most is 25")
+TORN = Limit(40.0, "%", _OWN)
 """The same on the mean of a second, also in fast flight: control is being lost."""
 MORE = Limit(8.0, "%", _OWN)
 """What hovering takes more or less than up to `MEMORY_S` before; a battery that empties takes more
@@ -26,6 +27,9 @@ SLOW_M_S, LEVEL_M_S = 2.0, 0.5
 """In fast flight, and in climbs, motors differ by the way that they go."""
 LEANT_DEG = 8.0
 """Who leans more hovers in a wind, which takes more of the motors."""
+LOW_M, HIGH_M, SETTLED_S = 1.0, 2.0, 4.0
+"""At touch-down motors differ, and idle, until the vehicle knows some seconds later that it stands:
+so high is in the air, and a hover of which no landing follows within so long."""
 _LEAST_SAMPLES = 4
 _IN_USE = 5.0
 """Per cent: a channel that never gives so much is no motor."""
@@ -71,27 +75,39 @@ class MotorsDetector:
     torn: tuple[float, str, float] | None = None
     more: tuple[float, float, float] | None = None
     most_uneven: float | None = None
+    ground_up_m: float | None = None
+    up_m: float = inf
+    """Above where it stood last; infinite where the record begins in the air."""
+    settling: deque[tuple[float, float, list[float]]] = field(default_factory=deque)
+    """Windows that are judged once it is known that no landing followed: when they ended, then as
+    `_hovered` takes them."""
 
     def handle(self, fact: Fact, now: Situation) -> None:
         if isinstance(fact, Pose):
             slow = fact.groundspeed_mps < SLOW_M_S and abs(fact.climb_mps) < LEVEL_M_S
             self.slow = slow and max(abs(fact.roll_deg), abs(fact.pitch_deg)) < LEANT_DEG
+            if not now.flying:
+                self.ground_up_m = fact.pos_enu[2]
+            self.up_m = inf if self.ground_up_m is None else fact.pos_enu[2] - self.ground_up_m
         if not isinstance(fact, Sample) or fact.plot != "motors":
             return
         if not now.in_air:
             self.hover.rest()
             self.second.rest()
+            self.settling.clear()
             return
+        while self.settling and now.t_s - self.settling[0][0] > SETTLED_S:
+            self._hovered(*self.settling.popleft()[1:])
         values = fact.values[: MOTORS_OF.get(now.kind, MOTORS)]
         ended = self.second.add(now.t_s, values)
-        if ended is not None:
+        if ended is not None and self.up_m > HIGH_M:
             self._second(*ended)
-        if not self.slow:
+        if not self.slow or self.up_m < LOW_M:
             self.hover.rest()
             return
         ended = self.hover.add(now.t_s, values)
         if ended is not None:
-            self._hovered(*ended)
+            self.settling.append((now.t_s, *ended))
 
     def _second(self, t_s: float, means: list[float]) -> None:
         spread, names = _spread(means)

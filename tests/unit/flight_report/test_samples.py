@@ -92,7 +92,7 @@ class TestMotors:
     def test_one_that_gives_more_than_the_others(
         self, values: tuple[float, ...], title: str
     ) -> None:
-        facts: list[tuple[float, Fact]] = [(0.0, HOVER), *motors(values, 0.0, 8.0)]
+        facts: list[tuple[float, Fact]] = [(0.0, HOVER), *motors(values, 0.0, 14.0)]
         findings = found(MotorsDetector(), facts).findings
         assert (findings[0].title if findings else "") == title
 
@@ -101,10 +101,21 @@ class TestMotors:
         facts: list[tuple[float, Fact]] = [
             (0.0, HOVER),
             *motors((50.0,) * 4, 0.0, 6.0),
-            *motors((after,) * 4, 6.0, 12.0),
+            *motors((after,) * 4, 6.0, 16.0),
         ]
         titles = [f.title for f in found(MotorsDetector(), facts).findings]
         assert titles == ([f"hovering took {way} thrust at once"] if way else [])
+
+    def test_what_a_touch_down_follows_is_no_hover(self) -> None:
+        """As in the logs of a real PX4: the motors idle before it knows that it stands."""
+        detector, now = MotorsDetector(), flying()
+        idle = motors((5.0, 30.0, 30.0, 5.0), 10.0, 13.0)
+        for t_s, fact in [(0.0, HOVER), *motors((50.0,) * 4, 0.0, 10.0), *idle]:
+            now.t_s = t_s
+            detector.handle(fact, now)
+        now.t_s, now.in_air = 13.0, False
+        detector.handle(Sample("motors", (5.0,) * 4), now)
+        assert detector.result(now).findings == []
 
     def test_a_battery_that_empties_takes_more_slowly(self) -> None:
         facts: list[tuple[float, Fact]] = [(0.0, HOVER)]
