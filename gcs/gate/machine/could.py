@@ -12,7 +12,7 @@ from gcs.gate.airspace.questions.back_inside import WayBack
 from gcs.gate.machine.checks import Check
 from gcs.gate.machine.memory import Memory
 from gcs.gate.machine.rows.requests_to_fly import arm
-from gcs.gate.machine.sentences import REFUSED, no_fresh_position
+from gcs.gate.machine.sentences import REFUSED, no_fresh_position, position_too_old
 from gcs.gate.machine.step_context import StepContext
 from gcs.gate.machine.verifying import home_or_fence_unknown
 from gcs.gate.policy.policy import Policy
@@ -29,7 +29,7 @@ def why_not_arm(policy: Policy, memory: Memory, now_ns: int) -> Refusal | None:
     """
     step = StepContext(policy, memory, now_ns)
     if memory.state is State.STALE or step.stale:
-        return Refusal(Code.STALE, "the vehicle's position is too old")
+        return position_too_old(memory.position_age_ns(now_ns), policy)
     if memory.state is not State.GROUNDED:
         return Refusal(
             Code.ALREADY_FLYING, f"the vehicle is not on the ground: {memory.state.name}"
@@ -52,7 +52,7 @@ def why_not_resume(policy: Policy, memory: Memory, now_ns: int) -> Refusal | Non
     if memory.verifier is None:
         return home_or_fence_unknown()
     if step.stale or memory.pos_ned is None:
-        return no_fresh_position(memory)
+        return no_fresh_position(memory, policy, now_ns)
     judged = memory.verifier.hold_point(memory.pos_ned, AT_REST, (), floor_applies=True)
     if not isinstance(judged, Refusal):
         return Check.SEVERITY.refusal(step)

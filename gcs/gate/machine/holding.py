@@ -16,8 +16,8 @@ from gcs.gate.effects import CommandKind, Level
 from gcs.gate.machine import verifying
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import Goal
+from gcs.gate.machine.sentences import no_fresh_position
 from gcs.gate.machine.step_context import SetpointDraft, StepContext
-from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
 
 
@@ -121,7 +121,7 @@ def brake(step: StepContext) -> None:
 def start_grace(step: StepContext) -> None:
     """The position is too old: remember the state, and let the setpoints go on for the grace."""
     memory = step.memory
-    step.refuse_pending(Refusal(Code.STALE, "the vehicle's position is too old"))
+    step.refuse_pending(no_fresh_position(memory, step.policy, step.now_ns))
     memory.back_to = memory.state
     memory.grace_until_ns = step.after_ns(step.policy.stale_grace_s)
 

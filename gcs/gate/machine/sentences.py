@@ -10,9 +10,10 @@ from types import MappingProxyType
 from typing import Final
 
 from gcs.enu_text import place
+from gcs.frames import enu_from_ned
 from gcs.gate.effects import CommandKind
 from gcs.gate.machine.events import Event, event_of
-from gcs.gate.machine.memory import Memory
+from gcs.gate.machine.memory import SECOND_NS, Memory
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import BeginStream, Disarm, GoTo, Request, SetMode, SwitchFence
@@ -67,19 +68,31 @@ ENDED: Final[Mapping[Code, str]] = MappingProxyType(
 NO_POSITION_YET: Final = Refusal(
     Code.NO_POSITION, "the vehicle has no position yet (the estimator is starting)"
 )
-POSITION_TOO_OLD: Final = Refusal(Code.STALE, REFUSED[Code.STALE])
 
 
-def no_fresh_position(memory: Memory) -> Refusal:
+def no_fresh_position(memory: Memory, policy: Policy, now_ns: int) -> Refusal:
     """There never was a position, or the last one is too old."""
-    return NO_POSITION_YET if memory.pos_ned is None else POSITION_TOO_OLD
+    if memory.pos_ned is None:
+        return NO_POSITION_YET
+    return position_too_old(memory.position_age_ns(now_ns), policy)
 
 
-def refusal_of(code: Code, request: Request, memory: Memory, policy: Policy) -> Refusal:
+def position_too_old(age_ns: int | None, policy: Policy) -> Refusal:
+    """With its age, of which none is left once the vehicle was lost, and the most it may have."""
+    numbers: tuple[tuple[str, float], ...] = (("max_age_s", policy.position_age_s),)
+    if age_ns is not None:
+        numbers = (("position_age_s", age_ns / SECOND_NS), *numbers)
+    return Refusal(Code.STALE, REFUSED[Code.STALE], numbers)
+
+
+def refusal_of(
+    code: Code, request: Request, memory: Memory, policy: Policy, now_ns: int
+) -> Refusal:
     """The refusal of `request` with `code`, in the words for what stands in its way."""
     if code is Code.STALE:
-        return no_fresh_position(memory)
+        return no_fresh_position(memory, policy, now_ns)
     sentence = REFUSED[code]
+    numbers: tuple[tuple[str, float], ...] = ()
     if code is Code.NO_VEHICLE and memory.heard_before:
         sentence += " any more: hold, land and abort are sent to it all the same"
     elif code is Code.NOT_IN_CONTROL and memory.state in (State.RETURNING, State.LANDING):
@@ -90,6 +103,10 @@ def refusal_of(code: Code, request: Request, memory: Memory, policy: Policy) -> 
         )
     elif code is Code.BUSY:
         sentence = _what_is_under_way(request, memory, policy)
+        flown = memory.goal or memory.hold
+        if flown is not None:
+            names = ("goal_east_m", "goal_north_m", "goal_up_m")
+            numbers = tuple(zip(names, enu_from_ned(flown.pos_ned), strict=True))
     elif code is Code.POLICY:
         sentence += _key_of_policy(request)
     elif code is Code.NOT_FLYING and isinstance(request, SetMode):
@@ -99,7 +116,7 @@ def refusal_of(code: Code, request: Request, memory: Memory, policy: Policy) -> 
         )
     elif code is Code.UNSUPPORTED and isinstance(request, SetMode):
         sentence = _mode_not_sent(request)
-    return Refusal(code, sentence)
+    return Refusal(code, sentence, numbers)
 
 
 def _what_is_under_way(request: Request, memory: Memory, policy: Policy) -> str:

@@ -33,7 +33,7 @@ from gcs.gate.machine.memory import GATE, SECOND_NS, Goal, Memory, Task
 from gcs.gate.machine.sentences import ENDED, done_at_once, not_shown, refusal_of
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
-from gcs.gate.requests import BeginStream
+from gcs.gate.requests import BeginStream, Request
 from gcs.gate.states import Control, FlightMode, State
 
 NOT_HEARD: Final = frozenset({State.STALE, State.NO_VEHICLE})
@@ -189,12 +189,15 @@ class StepContext:
         """Refuse the present request or sample: for the reason `why` where there is one, else with
         the sentence for `code`."""
         if self.streamed is not None:
-            judged = self.why or refusal_of(code, BeginStream(), self.memory, self.policy)
+            judged = self.why or self._refusal(code, BeginStream())
             self._refuse_sample(judged)
             return
         assert self.requested is not None
-        refusal = self.why or refusal_of(code, self.requested.request, self.memory, self.policy)
+        refusal = self.why or self._refusal(code, self.requested.request)
         self.verdict(self.requested, Ruling.REFUSED, refusal)
+
+    def _refusal(self, code: Code, request: Request) -> Refusal:
+        return refusal_of(code, request, self.memory, self.policy, self.now_ns)
 
     # ------------------------------------------------------------------------------ streams
 

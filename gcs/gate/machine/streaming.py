@@ -122,7 +122,7 @@ def note_good(step: StepContext) -> None:
 def hold_in_place(step: StepContext) -> None:
     """Hold where the vehicle is, and tell the client why its samples are not flown."""
     memory = step.memory
-    step.refuse_stream(step.why or no_fresh_position(memory))
+    step.refuse_stream(step.why or no_fresh_position(memory, step.policy, step.now_ns))
     if memory.flown is not None:
         memory.flown = None
         _hold_ahead(step)

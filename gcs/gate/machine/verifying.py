@@ -40,7 +40,7 @@ def position(step: StepContext, gained_ned: tuple[Vec3, ...] = ()) -> Refusal | 
     if memory.verifier is None:
         return _keep(step, home_or_fence_unknown())
     if step.stale or memory.pos_ned is None or memory.v_ned is None:
-        return _keep(step, no_fresh_position(memory))
+        return _keep(step, no_fresh_position(memory, step.policy, step.now_ns))
     judged = memory.verifier.hold_point(
         memory.pos_ned, memory.v_ned, gained_ned, floor_applies=True
     )
@@ -83,7 +83,7 @@ def climb(step: StepContext) -> Refusal | None:
     if memory.verifier is None:
         return _keep(step, home_or_fence_unknown())
     if step.stale or memory.pos_ned is None:
-        return _keep(step, no_fresh_position(memory))
+        return _keep(step, no_fresh_position(memory, step.policy, step.now_ns))
     return _keep(step, memory.verifier.takeoff(step.requested.request.up_m, memory.pos_ned))
 
 
@@ -93,7 +93,7 @@ def top(step: StepContext) -> Refusal | None:
     if memory.verifier is None:
         return _keep(step, home_or_fence_unknown())
     if step.stale or memory.pos_ned is None or memory.v_ned is None:
-        return _keep(step, no_fresh_position(memory))
+        return _keep(step, no_fresh_position(memory, step.policy, step.now_ns))
     return _keep(step, memory.verifier.goal(memory.top_ned, None, memory.pos_ned, memory.v_ned))
 
 
@@ -147,7 +147,7 @@ def _sample(step: StepContext, sample: StreamSample) -> Refusal | None:
     if memory.verifier is None:
         return _keep(step, home_or_fence_unknown())
     if age_s is None or step.stale or memory.pos_ned is None or memory.v_ned is None:
-        return _keep(step, no_fresh_position(memory))
+        return _keep(step, no_fresh_position(memory, step.policy, step.now_ns))
     before = leans_before(step, sample, age_s)
     gained = may_have(step, sample.pos_ned)
     judged = memory.verifier.stream_sample(

@@ -161,8 +161,8 @@ class Flights(Asks):
         return self.request(ipc.Ask(0, "resume"), wait, timeout_s)
 
     def photo(self, *, wait: bool = True, timeout_s: float | None = None) -> Operation:
-        """Take a picture while hovering; moves are refused meanwhile.  Once it is complete,
-        `picture` of what is returned is the vehicle's own number of it."""
+        """Take a picture while hovering (after a hold `resume` first); moves are refused meanwhile.
+        Once it is complete, `picture` of what is returned is the vehicle's own number of it."""
         return self.request(ipc.Ask(0, "photo"), wait, timeout_s)
 
     def mode(

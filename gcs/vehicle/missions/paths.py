@@ -7,6 +7,7 @@ from typing import Literal
 
 from gcs.gate.airspace.projection import Projection
 from gcs.gate.airspace.verifier import verifier_for
+from gcs.gate.machine.sentences import position_too_old
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import LandedState
@@ -70,8 +71,9 @@ def verifying(
 ) -> Verifying | Refusal:
     """The whole mission, or all that may follow from `begin_item` on, from where the vehicle is
     now, against the policy's fence and its own."""
-    if now_ns - telemetry.position_ns > round(policy.position_age_s * 1e9):
-        return Refusal(Code.STALE, "the vehicle's position is too old")
+    age_ns = now_ns - telemetry.position_ns
+    if age_ns > round(policy.position_age_s * 1e9):
+        return position_too_old(age_ns, policy)
     if telemetry.origin is None or telemetry.home_ned is None or telemetry.pos_ned is None:
         return Refusal(Code.NO_ORIGIN, "the vehicle's origin, home or position is not known yet")
     ground = Ground(

@@ -12,7 +12,8 @@ from gcs.gate.condition import Condition, Severity
 from gcs.gate.effects import Level, Say, Transition
 from gcs.gate.inputs import ConditionChanged, LandedSeen, PositionSeen
 from gcs.gate.policy.parse import parse_policy
-from gcs.gate.requests import Arm
+from gcs.gate.refusal import Code
+from gcs.gate.requests import Arm, TakeControl, TakePhoto
 from gcs.gate.states import FlightMode, LandedState, State
 from tests.unit.gate.script import MS, SECOND, Script, policy
 from tests.unit.gate.situations import UP, lead_to
@@ -107,3 +108,26 @@ def test_the_levels_in_order() -> None:
         "FATAL",
     ]
     assert [int(level) for level in Level] == [1, 2, 3, 4, 5]
+
+
+def test_a_refusal_for_an_old_position_has_its_age_and_the_most_it_may_have() -> None:
+    script = Script(policy("default")).fly(UP)
+    script.now_ns += 2 * SECOND
+    script.heartbeat()
+    refusal = script.verdict(script.ask(TakeControl())).refusal
+    assert refusal is not None
+    assert refusal.code is Code.STALE
+    numbers = dict(refusal.numbers)
+    assert numbers["position_age_s"] == pytest.approx(2.05, abs=0.1)
+    assert numbers["max_age_s"] == policy("default").position_age_s
+
+
+def test_a_refusal_while_a_goal_is_flown_has_the_goal() -> None:
+    script = Script(policy("default")).take_control(UP)
+    script.goto(8.0, 3.0, UP)
+    script.tick()
+    refusal = script.verdict(script.ask(TakePhoto())).refusal
+    assert refusal is not None
+    assert refusal.code is Code.BUSY
+    names = ("goal_east_m", "goal_north_m", "goal_up_m")
+    assert refusal.numbers == tuple(zip(names, (8.0, 3.0, UP), strict=True))
