@@ -64,7 +64,7 @@ async def flown(columns: int, rows: int, folder: Path, shots: set[str]) -> None:
     port = free_port()
     with tempfile.TemporaryDirectory() as logs:
         faults = Path(logs, "faults.toml")
-        faults.write_text(GPS_LOST.format(at_s=75))
+        faults.write_text(GPS_LOST.format(at_s=66))
         argv = [sys.executable, "-m", "vehicle_sim", "--link", f"udpout://127.0.0.1:{port}"]
         argv += ["--wind", "4,225,0.5", "--fault", str(faults)]
         vehicle = subprocess.Popen(argv, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -163,7 +163,7 @@ async def flight(app: FlyApp, pilot: Pilot[None], folder: Path, name: str, shots
     await pilot.press("q", "u", "tab", "enter")
     await until(app, pilot, lambda: state(app) == "FLYING_MISSION")
     await pilot.press("v", "z")
-    await pilot.pause(14.0)
+    await pilot.pause(10.0)
     await shot("mission")
     await pilot.press("I")
     await pilot.pause(0.3)

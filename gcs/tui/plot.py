@@ -16,7 +16,7 @@ DASHES = (1, 3, 5, 2, 7, 4)
 MARKS = "abcdef"
 MAX_CURVES = len(MARKS)
 LEFT = 10
-LEAST_COLUMNS, LEAST_ROWS = LEFT + 20, 6
+LEAST_COLUMNS, LEAST_ROWS = LEFT + 20, 5
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ CURVES: Final[tuple[tuple[str, Callable[[Sample], float | None]], ...]] = (
     ("battery, %", lambda sample: sample.battery_pct),
 )
 LEGEND_ROWS: Final = 1
-LEAST_ROWS: Final = 7
+LEAST_ROWS: Final = 6
 
 
 class Graphs:
