@@ -182,7 +182,8 @@ def test_permits_are_issued_in_one_module_only() -> None:
     users = set()
     for path in package.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            names = {alias.name for alias in getattr(node, "names", []) if alias}
+            listed = getattr(node, "names", [])
+            names = {one.name for one in listed if isinstance(one, ast.alias)}
             imported = isinstance(node, ast.ImportFrom) and node.module == "gcs.gate.permit"
             if imported and names & {"issue", "_SEAL"}:
                 users.add(path.relative_to(package).as_posix())
