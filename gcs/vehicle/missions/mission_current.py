@@ -1,8 +1,9 @@
 """What a vehicle tells of its mission (MISSION_CURRENT), beside the one that was verified.
 
 It tells how many items there are, and newer firmware a number of the mission (`mission_id`).  The
-recorded PX4 1.14 and ArduCopter 4.7 give none.  A PX4 1.14 without a mission tells nothing, and is
-asked how many items there are (MISSION_REQUEST_LIST).
+recorded PX4 1.14 and ArduCopter 4.7 give none.  A PX4 1.14 tells the item that it is at and nothing
+else, and without a mission not even that: it is asked how many items there are
+(MISSION_REQUEST_LIST).
 """
 
 from __future__ import annotations
@@ -12,10 +13,11 @@ from typing import Final
 
 from gcs.session.speedup_waits import Times
 from gcs.vehicle.missions.plans import OnBoard
+from gcs.wire.ids import MissionState
 from gcs.wire.messages import MissionCurrent
 
 NO_ITEMS: Final = (0, 0xFFFF)
-"""MISSION_CURRENT.total without a mission.  PX4 has told it since 1.14; 0 was "not told" before."""
+"""MISSION_CURRENT.total without a mission: 0 of an ArduPilot, which tells NO_MISSION with it."""
 NEWS_NS: Final = 1_500_000_000
 """How long a MISSION_CURRENT may still be about the mission before: it comes once a second."""
 
@@ -36,6 +38,8 @@ class MissionTold:
     def __init__(self, times: Times) -> None:
         self._times = times
         self._told: MissionCurrent | None = None
+        self._counted = False
+        """What it has told is the number that it was asked for."""
         self._first_item = 0
         """The number of the first item after home, where home is one."""
         self._verified_id = 0
@@ -48,6 +52,13 @@ class MissionTold:
     def forget(self) -> None:
         """The vehicle restarted or was away."""
         self._told = self._refused = None
+        self._counted = False
+
+    def changed(self) -> None:
+        """It has taken a mission, or cleared it: another number may be right."""
+        self._refused = None
+        if self._counted:
+            self._told, self._counted = None, False
 
     def refused(self, items: int, why: str) -> None:
         """The mission on board, of so many items that the vehicle counts, was read and does not
@@ -66,8 +77,15 @@ class MissionTold:
         self, told: MissionCurrent, known: OnBoard | None, first_item: int, now_ns: int
     ) -> None:
         """Keep it, and the number of the verified mission, once it is told after that was brought
-        on board.  `first_item`: of those that the vehicle counts."""
-        self._told, self._first_item = told, first_item
+        on board.  `first_item`: of those that the vehicle counts.
+
+        Without items and a state it tells of neither (common.xml: 0 is "not supported"), but that
+        there is a mission: a PX4 1.14 sends none else."""
+        if told.total == 0 and told.mission_state == MissionState.UNKNOWN:
+            if self._counted and self._told is not None and not self._told.total:
+                self._told = None
+            return
+        self._told, self._first_item, self._counted = told, first_item, False
         self._look_at_refused(told)
         if known is None:
             self.learn_anew()
@@ -77,10 +95,12 @@ class MissionTold:
             self._verified_id = self._verified_id or told.mission_id
             self._seen |= told.total == self._countable(known)
 
-    def counted(self, items: int) -> None:
-        """MISSION_COUNT, of a vehicle that has sent no MISSION_CURRENT yet."""
-        if self._told is None:
-            self._told = MissionCurrent(seq=0, total=items)
+    def counted(self, count: int, first_item: int = 0) -> None:
+        """MISSION_COUNT, of a vehicle whose MISSION_CURRENT has told no number."""
+        if self._told is None or self._counted:
+            items = max(0, count - first_item)
+            self._told, self._counted = MissionCurrent(seq=0, total=items), True
+            self._first_item = first_item
 
     @property
     def known(self) -> bool:

@@ -268,10 +268,10 @@ class Missions:
                 over = state == MissionState.COMPLETE and self._was_active
                 work += self._progress(seq, over)
             case MissionCount(count=count, mission_type=MissionType.MISSION):
-                self._told.counted(max(0, count - first_item(view.telemetry)))
+                self._told.counted(count, first_item(view.telemetry))
             case MissionAck(type=MissionResult.ACCEPTED, mission_type=MissionType.MISSION):
                 self._taken_ns = now_ns
-                self._told.forget_refused()  # another one may be on board, of whomever
+                self._told.changed()  # by whomever
             case MissionItemReached(seq=seq):
                 work += self._reached(seq)
         if self.job is not None:
@@ -295,8 +295,7 @@ class Missions:
         return self._told.does_not_clear(self._on_board)
 
     def ask_how_many(self, view: VehicleView) -> list[Work]:
-        """Ask for the number of items of a vehicle that has told nothing of its mission: a PX4 1.14
-        without one sends no MISSION_CURRENT."""
+        """Ask for the number of items of a vehicle that has not told it: a PX4 1.14."""
         if self._told.known or self.job is not None:
             return []
         telemetry = view.telemetry

@@ -57,6 +57,22 @@ def test_a_count_is_told_too_where_nothing_else_is() -> None:
     assert part.unverified(None) == NOT_VERIFIED
 
 
+def test_the_count_stands_while_a_px4_1_14_tells_its_item_alone() -> None:
+    """Seen of PX4 1.14.3: with 3 items on board MISSION_CURRENT has a seq, and zeros."""
+    part = MissionTold(Times())
+    part.heard(MissionCurrent(seq=1), None, 0, SECOND)
+    assert not part.known
+    part.counted(3)
+    part.heard(MissionCurrent(seq=1), None, 0, 2 * SECOND)
+    assert "(3 items) was not verified" in part.unverified(None)
+    part.changed()
+    assert not part.known, "asked anew, once a mission was sent or cleared"
+    part.counted(0)
+    assert not part.unverified(None)
+    part.heard(MissionCurrent(seq=0), None, 0, 3 * SECOND)
+    assert not part.known, "it sends none without a mission: somebody has sent it one"
+
+
 def test_after_an_upload_it_is_not_named() -> None:
     part = refused(current())
     part.forget_refused()
