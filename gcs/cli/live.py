@@ -105,11 +105,11 @@ def _of_new(config: StationConfig, address: tuple[str, int], allow: tuple[str, .
     """A station without a screen, until a Ctrl-C: its log goes to standard error."""
     from gcs.cli.live_option import open_beside
     from gcs.exit_codes import ExitCode
-    from gcs.operator import event_text
     from gcs.operator.client import StationClient
     from gcs.operator.dialogue import Dialogue
     from gcs.operator.errors import Interrupted
     from gcs.operator.interrupts import Interrupts
+    from gcs.operator.text import event_text
 
     with Interrupts() as interrupts:
         station = StationClient.start(config)
@@ -128,7 +128,7 @@ def _of_new(config: StationConfig, address: tuple[str, int], allow: tuple[str, .
 def _print_log(event: object) -> None:
     from gcs import ipc
     from gcs.gate.effects import Level
-    from gcs.operator import event_text
+    from gcs.operator.text import event_text
 
     if isinstance(event, ipc.LogEvent) and event.level >= Level.INFO:
         click.echo(event_text.log_line(event), err=True)

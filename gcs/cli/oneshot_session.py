@@ -21,15 +21,15 @@ from gcs.exit_codes import ExitCode
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.ipc import Ask
-from gcs.operator import event_text
 from gcs.operator.chosen_vehicle import ChosenVehicle
 from gcs.operator.client import Polling, StationClient
 from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
-from gcs.operator.event_text import WARNING, WarningFilter
 from gcs.operator.interrupts import Interrupts
 from gcs.operator.standstill import Standstill
+from gcs.operator.text import event_text
+from gcs.operator.text.event_text import WARNING, WarningFilter
 from gcs.request_words import REQUESTS, SendRequests
 from gcs.shell.stations import Description
 

@@ -29,7 +29,7 @@ def operations(ctx: click.Context, links: tuple[str, ...], as_json: bool) -> Non
     ctx.obj = links
     if ctx.invoked_subcommand is not None:
         return
-    from gcs.operator.event_text import operation_line
+    from gcs.operator.text.event_text import operation_line
 
     with _view(links) as view:
         listed = view.listed(LIST_WAIT_S)
@@ -52,7 +52,7 @@ def operations(ctx: click.Context, links: tuple[str, ...], as_json: bool) -> Non
 def wait(ctx: click.Context, number: int, wait: float, as_json: bool) -> None:
     """Wait until an operation has ended; exit with how."""
     from gcs.gate.refusal import Code
-    from gcs.operator.event_text import operation_line
+    from gcs.operator.text.event_text import operation_line
 
     with _view(ctx.obj) as view:
         ended = view.ended(number, wait)

@@ -15,7 +15,7 @@ from gcs.cli.settings import Configured, usual_links
 from gcs.config import DEFAULT_LINK, StationConfig, Wanted
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
-from gcs.operator.number_text import read_number, read_whole_number
+from gcs.operator.text.number_text import read_number, read_whole_number
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem

@@ -11,7 +11,7 @@ from click.core import ParameterSource
 
 from gcs.cli.options import CLIENT_KEY, LOG_DIR, POLICY, SIGN_KEY, UTF8, FiniteRange, Seed
 from gcs.cli.records.options import COMPACT, ROTATE_AGE, ROTATE_SIZE, with_files
-from gcs.operator.number_text import read_number
+from gcs.operator.text.number_text import read_number
 
 if TYPE_CHECKING:
     from gcs.config import StationConfig

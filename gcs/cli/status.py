@@ -12,9 +12,9 @@ from gcs import ipc
 from gcs.cli.progress import ProgressDisplay
 from gcs.enu_text import signed_enu
 from gcs.exit_codes import ExitCode
-from gcs.operator.control_text import control_words
 from gcs.operator.dialogue import Dialogue
-from gcs.operator.event_text import whole_degrees
+from gcs.operator.text.control_text import control_words
+from gcs.operator.text.event_text import whole_degrees
 
 SLOW_VALUES_WAIT_S = 1.5
 """Battery and mode come less often than the position."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from gcs.flight_report.compare import Comparison, Figure, compare, compared_charts
 from gcs.flight_report.flight import Flight, VehicleFlight
-from gcs.flight_report.html_text import text
 from gcs.flight_report.number_format import sentence, utc
+from gcs.flight_report.page.html_text import text
 from gcs.flight_report.render import filled, plots_html, scene_html, verdict
 
 

@@ -11,16 +11,17 @@ from importlib.resources import files
 
 import msgspec
 
-from gcs.flight_report import tables_html
 from gcs.flight_report.charts import Chart, ChartData, chart_data
 from gcs.flight_report.drift import drift_before
 from gcs.flight_report.findings.finding import Finding
 from gcs.flight_report.flight import Flight, VehicleFlight
-from gcs.flight_report.html_text import script_json, text
 from gcs.flight_report.number_format import duration, metres, utc
-from gcs.flight_report.parameters_html import parameters
-from gcs.flight_report.path_svg import path_pictures
-from gcs.flight_report.spectrum_svg import spectrum_figure
+from gcs.flight_report.page import tables_html
+from gcs.flight_report.page.html_text import script_json, text
+from gcs.flight_report.page.parameters_html import parameters
+from gcs.flight_report.page.path_svg import path_pictures
+from gcs.flight_report.page.spectrum_svg import spectrum_figure
+from gcs.flight_report.page.timeline_html import timeline
 from gcs.flight_report.summary import (
     consequences,
     main_trouble,
@@ -32,7 +33,6 @@ from gcs.flight_report.summary import (
     what_was_before,
     what_went_wrong,
 )
-from gcs.flight_report.timeline_html import timeline
 
 _PLACE = re.compile(r"\{\{(\w+)\}\}")
 

@@ -13,8 +13,8 @@ import msgspec
 
 from gcs.flight_report.facts import Build, Decision, Fact, Identity, LogLine, PlanItem, Text
 from gcs.flight_report.flight import Fence, Flight, VehicleFlight
-from gcs.flight_report.mavlink_samples import version_text
-from gcs.flight_report.topics import UNREADABLE, Source, source_of
+from gcs.flight_report.readers.mavlink_samples import version_text
+from gcs.flight_report.readers.topics import UNREADABLE, Source, source_of
 from gcs.flight_report.vehicle_scan import VehicleScan
 from gcs.gate.policy.parse import DEFAULT
 from gcs.mcap_file.format import Attachment, Channel, Message, Metadata, Schema

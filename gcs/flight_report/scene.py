@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import msgspec
 
-from gcs.flight_report.fence_svg import zone_outline
 from gcs.flight_report.flight import Flight, VehicleFlight
-from gcs.flight_report.path_svg import FENCE_REACH
+from gcs.flight_report.page.fence_svg import zone_outline
+from gcs.flight_report.page.path_svg import FENCE_REACH
 from gcs.flight_report.projection import box_of
 from gcs.flight_report.summary import main_trouble
 from gcs.flight_report.track import Track, TrackPoint

@@ -39,8 +39,8 @@ from gcs.live.services import (
     goal_height_m,
     request_of,
 )
-from gcs.operator import event_text
 from gcs.operator.conversation import Conversation
+from gcs.operator.text import event_text
 
 LOOKING = 0
 """In place of a viewer's number: the live view's own connection."""

@@ -8,7 +8,7 @@ import shlex
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from gcs.operator.number_text import read_number
+from gcs.operator.text.number_text import read_number
 from gcs.request_words import (
     OTHER_NAMES,
     WORD_BY_NAME,

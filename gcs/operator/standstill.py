@@ -6,7 +6,7 @@ import math
 
 from gcs import ipc
 from gcs.gate.states import State
-from gcs.operator import event_text
+from gcs.operator.text import event_text
 
 STANDS_M_S = 0.3
 """Slower than this it stands, as far as its own position reports tell."""

@@ -43,11 +43,11 @@ from gcs.session import announcements
 from gcs.session.effects import Effect, Emit, LeaveOutPeer
 from gcs.session.speedup_waits import Times
 from gcs.session.work import Log, Work
+from gcs.station.fleet.separation import Separation
 from gcs.station.links import Counts, Links
 from gcs.station.operator_lines import line
 from gcs.station.operators import Operators
 from gcs.station.seen import seen_of
-from gcs.station.separation import Separation
 from gcs.station.signatures import Signatures
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.missions.missions import timing_of

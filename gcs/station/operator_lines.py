@@ -19,9 +19,9 @@ from gcs.session import announcements
 from gcs.session.effects import Emit
 from gcs.session.requests import request_of, source_of
 from gcs.session.work import STATION, ForOwner, Work
-from gcs.station.goals import settled
+from gcs.station.fleet.goals import settled
+from gcs.station.fleet.separation import Separation
 from gcs.station.operators import Operators
-from gcs.station.separation import Separation
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.gate_port import NOT_FLYING
 from gcs.vehicle.vehicle import Vehicle

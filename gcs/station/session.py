@@ -91,15 +91,15 @@ from gcs.session.work import (
 )
 from gcs.station.bridge_port import BridgePort
 from gcs.station.ending import Ending
+from gcs.station.fleet.neighbours import others_of
+from gcs.station.fleet.separation import Separation
 from gcs.station.frame_intake import FramesRaisedError, Incoming
 from gcs.station.history import History
 from gcs.station.links import Links
-from gcs.station.neighbours import others_of
 from gcs.station.operator_lines import line
 from gcs.station.operators import Operators
 from gcs.station.preflight import Itself, before_arming, report
 from gcs.station.queue import WorkQueue
-from gcs.station.separation import Separation
 from gcs.station.signatures import NO_KEYS, Keys, Signatures
 from gcs.station.ticks import Ticks
 from gcs.station.vehicles import FIRST as FIRST_SLOT

@@ -15,9 +15,9 @@ from textual.message import Message
 from textual.widgets import Static
 
 from gcs import ipc, resources
-from gcs.operator import event_text
 from gcs.operator.client import Listened, StationEnded, StationEvent
 from gcs.operator.station_loss import after_station_died
+from gcs.operator.text import event_text
 from gcs.tui import look, preflight_page, wind
 from gcs.tui.ascii_signs import needed
 from gcs.tui.command_line import CommandLine

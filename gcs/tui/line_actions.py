@@ -9,8 +9,8 @@ from time import monotonic
 import msgspec
 
 from gcs import ipc, request_words, resources
-from gcs.operator import event_text
 from gcs.operator.line_parser import LineError, parse_line
+from gcs.operator.text import event_text
 from gcs.tui import look
 from gcs.tui.actions import KeyActions
 from gcs.tui.command_line import CommandLine

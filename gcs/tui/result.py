@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from gcs import ipc
-from gcs.operator import event_text
 from gcs.operator.client import Polling, StationEnded
 from gcs.operator.conversation import Conversation, exit_code_of
 from gcs.operator.dialogue import InterruptSource
 from gcs.operator.errors import Interrupted
+from gcs.operator.text import event_text
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,9 +12,9 @@ from msgspec import structs
 
 from gcs import ipc, request_words
 from gcs.gate.states import State
-from gcs.operator import control_text, event_text
 from gcs.operator.conversation import Conversation, TrackedRequest
 from gcs.operator.standstill import Standstill
+from gcs.operator.text import control_text, event_text
 from gcs.tui import fleet
 from gcs.tui.alarms import Alarms
 from gcs.tui.fleet import Mind, Minds

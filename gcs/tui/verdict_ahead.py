@@ -10,8 +10,8 @@ from typing import Final
 
 from gcs import ipc
 from gcs.enu_text import labelled_enu
-from gcs.operator import event_text
 from gcs.operator.line_parser import LineError, parse_line
+from gcs.operator.text import event_text
 from gcs.request_words import Doer, SendRequests, doer_of
 
 LEAST_S: Final = 0.5

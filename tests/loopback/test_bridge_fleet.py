@@ -13,7 +13,7 @@ from gcs.gate.condition import Condition, Severity
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.report import AttachmentItem, DecisionItem
-from gcs.station.separation import Separation
+from gcs.station.fleet.separation import Separation
 from tests.loopback.bridged import ARRIVES_M, BRIDGE
 from tests.loopback.fleet import (
     ACCEPTED,

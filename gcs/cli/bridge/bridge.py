@@ -230,7 +230,7 @@ def _run(
 def _told_end(ended: StationEnded, *, simulated: bool) -> int:
     """Where the vehicle is, and where the record; the exit code."""
     from gcs.exit_codes import ExitCode
-    from gcs.operator import event_text
+    from gcs.operator.text import event_text
 
     if ended.bye is None:
         click.echo(f"gcs: the link ended without a good-bye\n{ended.stderr_tail}", err=True)

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from gcs import ipc
 from gcs.cli.bridge import text as bridge_text
-from gcs.operator import event_text
+from gcs.operator.text import event_text
 
 Printer = Callable[[str], None]
 STATUS_EVERY_NS = 10_000_000_000

@@ -17,7 +17,7 @@ from rich.text import Text
 from gcs import ipc
 from gcs.cli.bridge import text as bridge_text
 from gcs.gate.effects import Level
-from gcs.operator import event_text
+from gcs.operator.text import event_text
 
 DECISIONS = 8
 OTHER_LINES = 10

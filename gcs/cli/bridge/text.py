@@ -8,7 +8,7 @@ import time
 from gcs import ipc
 from gcs.enu_text import fixed
 from gcs.gate.states import State
-from gcs.operator import event_text
+from gcs.operator.text import event_text
 
 Row = tuple[str, ...]
 

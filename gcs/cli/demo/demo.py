@@ -75,10 +75,10 @@ def run_over(
     from gcs.cli.demo.files import write_beside
     from gcs.cli.demo.script import FLEET_SCRIPT, SCRIPT, perform, wait_for_all, wait_for_fleet
     from gcs.cli.demo.show import FlightPrinter, show_table, show_what_to_do
-    from gcs.operator import event_text
     from gcs.operator.conversation import exit_code_of
     from gcs.operator.dialogue import Dialogue
     from gcs.operator.errors import Interrupted
+    from gcs.operator.text import event_text
 
     flown: list[Flown] = []
     with FlightPrinter(console, connection.now_s) as printer:

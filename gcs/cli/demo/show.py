@@ -15,9 +15,9 @@ from gcs import ipc
 from gcs.cli.demo.files import Written
 from gcs.cli.demo.script import Flown
 from gcs.enu_text import signed_enu
-from gcs.operator import event_text
 from gcs.operator.conversation import TrackedRequest
-from gcs.operator.event_text import WARNING, WarningFilter
+from gcs.operator.text import event_text
+from gcs.operator.text.event_text import WARNING, WarningFilter
 
 STYLES = {
     "accepted": "cyan",

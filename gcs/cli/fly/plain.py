@@ -12,14 +12,15 @@ import msgspec
 from gcs import ipc, request_words
 from gcs.cli.fly.line_queue import AtOnce, BadLine, LineQueue
 from gcs.exit_codes import ExitCode
-from gcs.operator import event_text, line_parser, preflight
+from gcs.operator import line_parser, preflight
 from gcs.operator.chosen_vehicle import ChosenVehicle
 from gcs.operator.client import Polling, StationEnded
 from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import SETTLE_WAIT_S, Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
-from gcs.operator.event_text import WarningFilter
 from gcs.operator.standstill import Standstill
+from gcs.operator.text import event_text
+from gcs.operator.text.event_text import WarningFilter
 
 FRESH_WAIT_S = 0.5
 SAMPLE_S = 0.1

@@ -8,11 +8,11 @@ from importlib.resources import files
 from typing import TypeAlias
 
 from gcs.cli.mission.route import Route
-from gcs.flight_report.fence_svg import fence_from_above, fence_from_aside, zone_outline
 from gcs.flight_report.flight import Fence
-from gcs.flight_report.html_text import text
 from gcs.flight_report.number_format import clock
-from gcs.flight_report.path_svg import WIDTH_PX, colour_of, grid
+from gcs.flight_report.page.fence_svg import fence_from_above, fence_from_aside, zone_outline
+from gcs.flight_report.page.html_text import text
+from gcs.flight_report.page.path_svg import WIDTH_PX, colour_of, grid
 from gcs.flight_report.projection import Box, View, box_of
 from gcs.frames import Vec3
 from gcs.plan import commands

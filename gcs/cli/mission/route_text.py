@@ -13,7 +13,7 @@ from typing import Final
 from rich.text import Text
 
 from gcs.cli.mission.route import Route
-from gcs.flight_report.fence_svg import zone_outline
+from gcs.flight_report.page.fence_svg import zone_outline
 from gcs.flight_report.projection import Box, box_of, round_step
 from gcs.frames import Vec3
 from gcs.plan.legs import LegKind

@@ -102,7 +102,7 @@ def set_(name: str, value: str, **to: Unpack[ToVehicle]) -> None:
     from gcs import ipc
     from gcs.cli.param.talk import failure, with_vehicle
     from gcs.gate.refusal import Code
-    from gcs.operator.number_text import read_number
+    from gcs.operator.text.number_text import read_number
 
     try:
         number = read_number(value)

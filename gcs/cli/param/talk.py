@@ -11,9 +11,9 @@ from gcs.cli.common_options import ToVehicle, set_up
 from gcs.cli.oneshot_session import run
 from gcs.cli.progress import ProgressDisplay
 from gcs.exit_codes import ExitCode
-from gcs.operator import event_text
 from gcs.operator.conversation import TrackedRequest
 from gcs.operator.dialogue import Dialogue
+from gcs.operator.text import event_text
 from gcs.parameter_files.described import PATHS, Description, described
 from gcs.parameter_files.model import Entry
 

@@ -7,7 +7,7 @@ from itertools import groupby
 from rich.table import Table
 from rich.text import Text
 
-from gcs.operator.control_text import operator_words
+from gcs.operator.text.control_text import operator_words
 from gcs.tui import fleet, look
 from gcs.tui.command_line import CommandLine
 from gcs.tui.keymap import DEFAULT, Keymap

@@ -14,7 +14,7 @@ from rich.text import Text
 from textual.events import MouseScrollDown, MouseScrollUp
 
 from gcs import ipc
-from gcs.operator import event_text
+from gcs.operator.text import event_text
 from gcs.tui import look
 from gcs.tui.panels.panel import Panel
 

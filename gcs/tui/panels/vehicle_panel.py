@@ -11,8 +11,8 @@ from rich.text import Text
 from gcs import ipc
 from gcs.enu_text import signed_enu
 from gcs.gate.condition import Condition
-from gcs.operator.control_text import control_words
-from gcs.operator.event_text import whole_degrees
+from gcs.operator.text.control_text import control_words
+from gcs.operator.text.event_text import whole_degrees
 from gcs.tui import flight_numbers, look
 from gcs.tui.scene import REFUSED, Scene
 

@@ -14,8 +14,8 @@ from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
 from gcs.operator import joined
 from gcs.operator.client import StationClient
-from gcs.operator.event_text import operation_line
 from gcs.operator.line_parser import parse_line
+from gcs.operator.text.event_text import operation_line
 from gcs.policy_digest import policy_digest
 from gcs.request_words import SendRequests
 from gcs.shell.stations import Description

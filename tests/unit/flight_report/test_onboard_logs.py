@@ -8,9 +8,9 @@ import pytest
 
 from gcs.flight_report.facts import Battery, Estimator, Fact, Gps, Text, Vibration
 from gcs.flight_report.findings.failsafes import FailsafeDetector
-from gcs.flight_report.onboard_logs import ERRORS
-from gcs.flight_report.packed_fields import PackedFields
-from gcs.flight_report.topics import source_of
+from gcs.flight_report.readers.onboard_logs import ERRORS
+from gcs.flight_report.readers.packed_fields import PackedFields
+from gcs.flight_report.readers.topics import source_of
 from tests.unit.flight_report.facts_in_time import found
 
 

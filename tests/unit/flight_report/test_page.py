@@ -15,7 +15,7 @@ from gcs.flight_report.charts import chart_data
 from gcs.flight_report.findings_json import report_json
 from gcs.flight_report.flight import Flight
 from gcs.flight_report.number_format import clock, duration, utc
-from gcs.flight_report.path_svg import colour_of
+from gcs.flight_report.page.path_svg import colour_of
 from gcs.flight_report.projection import Box, View, round_step, ticks
 from gcs.flight_report.render import page
 from gcs.report import (

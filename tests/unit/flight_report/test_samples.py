@@ -14,8 +14,8 @@ from gcs.flight_report.findings.finding import Finding, Level
 from gcs.flight_report.findings.motors import MotorsDetector
 from gcs.flight_report.findings.wind import WindDetector
 from gcs.flight_report.flight import ParameterSeen, VehicleFlight
-from gcs.flight_report.mavlink_samples import version_text, wind
-from gcs.flight_report.parameters_html import differing, parameters
+from gcs.flight_report.page.parameters_html import differing, parameters
+from gcs.flight_report.readers.mavlink_samples import version_text, wind
 from gcs.flight_report.render import page
 from gcs.flight_report.sampled import Sampled
 from gcs.flight_report.spectrum import SEGMENT, Spectrum

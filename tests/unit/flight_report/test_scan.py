@@ -20,6 +20,7 @@ from gcs.flight_report.facts import (
     Vibration,
 )
 from gcs.flight_report.flight import Flight, VehicleFlight
+from gcs.flight_report.readers.topics import source_of
 from gcs.flight_report.render import page
 from gcs.flight_report.scan import scan
 from gcs.flight_report.summary import (
@@ -28,7 +29,6 @@ from gcs.flight_report.summary import (
     what_happened,
     what_went_wrong,
 )
-from gcs.flight_report.topics import source_of
 from gcs.mcap_file.errors import BadRecordError
 from gcs.record import ros1
 from gcs.record.log_line import read_log_line

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from gcs import ipc
-from gcs.operator.event_text import outcome_line, verdict_line
+from gcs.operator.text.event_text import outcome_line, verdict_line
 
 
 @pytest.mark.parametrize(

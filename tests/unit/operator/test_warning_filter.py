@@ -6,7 +6,7 @@ import pytest
 
 from gcs import ipc
 from gcs.operator.conversation import TrackedRequest
-from gcs.operator.event_text import WarningFilter
+from gcs.operator.text.event_text import WarningFilter
 
 CAUTION = "CAUTION: vehicle_failsafe_weak: the vehicle's own failsafes: none"
 

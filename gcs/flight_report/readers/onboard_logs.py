@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from gcs.flight_report.facts import Battery, Estimator, Fact, Gps, Text, Vibration
-from gcs.flight_report.onboard_samples import ONBOARD_SAMPLES
-from gcs.flight_report.packed_fields import PackedFields, Read
+from gcs.flight_report.readers.onboard_samples import ONBOARD_SAMPLES
+from gcs.flight_report.readers.packed_fields import PackedFields, Read
 
 AUTOPILOT_OF_PREFIX = {"dataflash": "ardupilot", "ulog": "px4"}
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from gcs.enu_text import labelled_enu
 from gcs.flight_report.findings.finding import Check, Finding, Level
 from gcs.flight_report.flight import Fence, Request, VehicleFlight
-from gcs.flight_report.html_text import text
 from gcs.flight_report.number_format import clock, sentence
-from gcs.flight_report.path_svg import colour_of
+from gcs.flight_report.page.html_text import text
+from gcs.flight_report.page.path_svg import colour_of
 
 MAX_FINDINGS = 200
 _WORDS = {

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from gcs.flight_report.fence_svg import fence_from_above, fence_from_aside, zone_outline
 from gcs.flight_report.flight import Flight, Request, VehicleFlight
-from gcs.flight_report.html_text import text
 from gcs.flight_report.number_format import clock
+from gcs.flight_report.page.fence_svg import fence_from_above, fence_from_aside, zone_outline
+from gcs.flight_report.page.html_text import text
 from gcs.flight_report.projection import Box, View, box_of, ticks
 from gcs.flight_report.summary import main_trouble
 from gcs.flight_report.track import TrackPoint

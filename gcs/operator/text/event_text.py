@@ -8,9 +8,9 @@ from gcs.gate.condition import Condition
 from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.operator.client import StationEnded
-from gcs.operator.control_text import control_words
 from gcs.operator.conversation import TrackedRequest
 from gcs.operator.errors import error_lines
+from gcs.operator.text.control_text import control_words
 
 LEVELS = ("", "DEBUG", "INFO", "WARN", "ERROR", "FATAL")
 

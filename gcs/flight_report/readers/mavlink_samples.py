@@ -15,7 +15,7 @@ from gcs.flight_report.facts import (
     PlanItem,
     Sample,
 )
-from gcs.flight_report.mavlink_fields import Read, numbers
+from gcs.flight_report.readers.mavlink_fields import Read, numbers
 from gcs.flight_report.sampled import MOTORS, WANTED
 from gcs.record.derived.vehicle_json import euler_deg
 from gcs.wire.ids import Cmd

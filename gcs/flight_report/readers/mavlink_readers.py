@@ -18,8 +18,8 @@ from gcs.flight_report.facts import (
     Text,
     Vibration,
 )
-from gcs.flight_report.mavlink_fields import Read, numbers, text
-from gcs.flight_report.mavlink_samples import SAMPLE_READERS
+from gcs.flight_report.readers.mavlink_fields import Read, numbers, text
+from gcs.flight_report.readers.mavlink_samples import SAMPLE_READERS
 from gcs.protocol.autopilot import autopilot_of, type_name
 from gcs.wire.ids import MavAutopilot, MavType
 

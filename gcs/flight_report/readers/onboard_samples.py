@@ -17,8 +17,8 @@ from gcs.flight_report.facts import (
     PlanItem,
     Sample,
 )
-from gcs.flight_report.mavlink_samples import percent, stick, wind
-from gcs.flight_report.packed_fields import PackedFields, Read, Value
+from gcs.flight_report.readers.mavlink_samples import percent, stick, wind
+from gcs.flight_report.readers.packed_fields import PackedFields, Read, Value
 from gcs.flight_report.sampled import MOTORS, WANTED
 from gcs.record.derived.vehicle_json import euler_deg
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from gcs.flight_report.flight import Flight, VehicleFlight
-from gcs.flight_report.html_text import text
 from gcs.flight_report.lanes import Lane, Span
 from gcs.flight_report.number_format import clock
+from gcs.flight_report.page.html_text import text
 
 SHORTEST_SHARE = 0.004
 """Of the whole record: a state that is shorter is not seen, and hides the name of the next."""

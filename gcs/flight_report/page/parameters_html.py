@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import isclose
 
 from gcs.flight_report.flight import ParameterSeen, VehicleFlight
-from gcs.flight_report.html_text import text
 from gcs.flight_report.number_format import clock, count
+from gcs.flight_report.page.html_text import text
 
 MAX_ROWS = 400
 SHOWN_ROWS = 12

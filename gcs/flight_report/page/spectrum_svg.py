@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from gcs.flight_report.html_text import text
-from gcs.flight_report.path_svg import WIDTH_PX, grid
+from gcs.flight_report.page.html_text import text
+from gcs.flight_report.page.path_svg import WIDTH_PX, grid
 from gcs.flight_report.projection import Box, View
 from gcs.flight_report.spectrum import MOTOR_HZ, SEGMENT, Spectrum
 

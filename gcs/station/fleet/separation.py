@@ -17,9 +17,9 @@ from gcs.gate.condition import Condition
 from gcs.gate.policy.policy import SeparationLimits
 from gcs.gate.refusal import Code, Refusal
 from gcs.session.work import ForOwner, Work, condition
-from gcs.station.neighbours import into_frame_of
+from gcs.station.fleet.neighbours import into_frame_of
+from gcs.station.fleet.ways import Leg, legs_of
 from gcs.station.vehicles import Vehicles
-from gcs.station.ways import Leg, legs_of
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
 

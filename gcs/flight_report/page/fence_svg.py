@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import cos, pi, sin
 
 from gcs.flight_report.flight import Fence
-from gcs.flight_report.html_text import text
+from gcs.flight_report.page.html_text import text
 from gcs.flight_report.projection import View
 from gcs.report import FenceShape
 

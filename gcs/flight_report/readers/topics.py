@@ -21,10 +21,10 @@ from gcs.flight_report.facts import (
     Pose,
     Status,
 )
-from gcs.flight_report.mavlink_fields import Read
-from gcs.flight_report.mavlink_readers import MAVLINK_READERS
-from gcs.flight_report.mavlink_samples import PLAN_READERS
-from gcs.flight_report.onboard_logs import AUTOPILOT_OF_PREFIX, onboard_reader
+from gcs.flight_report.readers.mavlink_fields import Read
+from gcs.flight_report.readers.mavlink_readers import MAVLINK_READERS
+from gcs.flight_report.readers.mavlink_samples import PLAN_READERS
+from gcs.flight_report.readers.onboard_logs import AUTOPILOT_OF_PREFIX, onboard_reader
 from gcs.record.log_line import read_log_line
 from gcs.report import ConditionItem, PointEnu
 

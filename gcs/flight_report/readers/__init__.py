@@ -1,0 +1,1 @@
+"""What the messages of a record, of any format, say: facts and samples."""

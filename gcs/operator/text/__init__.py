@@ -1,0 +1,1 @@
+"""Words for a person: events, control, numbers."""

@@ -1,0 +1,1 @@
+"""Several vehicles: what is near to what, and whose ways cross."""
