@@ -63,6 +63,10 @@ class Known:
     prearm_ok: bool | None = None
     why_not_arm: str = ""
     """What it has said against arming."""
+    other_mode: str = ""
+    """The mode it is in, where that is another one than `arming_mode`."""
+    arming_mode: str = ""
+    """A mode in which this autopilot arms."""
     on_ground: bool = True
     failsafes: tuple[tuple[Finding, tuple[str, ...]], ...] = ()
     failsafes_asked: bool = False
@@ -94,6 +98,8 @@ class Check:
     reads: str
     judge: Callable[[Known], Found]
 
+
+ARMS_IN: Final[Mapping[str, str]] = {"px4": "AUTO.LOITER", "ardupilot": "GUIDED"}
 
 OF_ROWS: Final[Mapping[str, tuple[Condition, ...]]] = {
     "link": (Condition.LINK_POOR,),
@@ -218,6 +224,10 @@ def _arming(seen: Known) -> Found:
         why = seen.why_not_arm or "it does not say that it would arm"
         return Found(Verdict.CAUTION, why, waits=True)
     if not seen.prearm_ok:
+        if seen.other_mode and not seen.why_not_arm:
+            # A mode in which nothing is armed, such as that of a landing, is a reason by itself.
+            sentence = f"in {seen.other_mode} it would not arm, and does not say why"
+            return Found(Verdict.CAUTION, sentence, (f"gcs mode {seen.arming_mode}",), waits=True)
         why = seen.why_not_arm or "it has not told why yet (an ArduPilot does every 30 s)"
         return Found(Verdict.FAIL, f"the vehicle would not arm: {why}", waits=not seen.why_not_arm)
     return Found(Verdict.PASS, "the vehicle would arm")
@@ -302,6 +312,7 @@ def known(vehicle: Vehicle, now_ns: int) -> Known | None:
     losses = vehicle.presence.losses
     missions = vehicle.missions
     autopilot = telemetry.autopilot
+    arming_mode = ARMS_IN.get(autopilot.name, "")
     return Known(
         policy=vehicle.port.policy,
         label=telemetry.label,
@@ -324,6 +335,10 @@ def known(vehicle: Vehicle, now_ns: int) -> Known | None:
         battery_v=telemetry.battery_v,
         prearm_ok=telemetry.prearm_healthy or telemetry.prearm_ok,
         why_not_arm=vehicle.words.against_arming(telemetry.custom_mode, now_ns, now_ns),
+        other_mode=""
+        if not arming_mode or telemetry.mode_name == arming_mode
+        else telemetry.mode_name,
+        arming_mode=arming_mode,
         on_ground=gate.memory.on_ground,
         failsafes=vehicle.settings.failsafes(telemetry),
         failsafes_asked=vehicle.settings.asked,

@@ -84,6 +84,12 @@ def test_what_is_ready_passes() -> None:
             "fail",
             "Compass not calibrated",
         ),
+        (
+            "arming checks",
+            {"prearm_ok": False, "other_mode": "AUTO.LAND", "arming_mode": "AUTO.LOITER"},
+            "caution",
+            "in AUTO.LAND it would not arm",
+        ),
         ("failsafes", {"failsafes_asked": False}, "caution", "being read"),
         ("failsafes", {"failsafes": ()}, "caution", "not known here"),
         ("failsafes", {"failsafes": (OFF, SOUND[1])}, "caution", "stick loss: off"),
