@@ -40,8 +40,8 @@ class Chosen:
             return ipc.Check(msgspec.structs.replace(command.asked, vehicle=self.sysid))
         if not isinstance(command, ipc.Ask | ipc.Stream | ipc.Preflight):
             return command
-        if command.vehicle == ipc.EVERY:
-            return command
+        if command.vehicle:
+            return command  # it names its own, or every one
         return msgspec.structs.replace(command, vehicle=self.sysid)
 
     def _told(self, events: Iterable[StationEvent]) -> list[StationEvent]:

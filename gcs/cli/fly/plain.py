@@ -12,6 +12,7 @@ import msgspec
 from gcs import ipc, request_words
 from gcs.cli.fly.line_queue import AtOnce, BadLine, LineQueue
 from gcs.exit_codes import ExitCode
+from gcs.gate.states import LandedState
 from gcs.operator import line_parser, preflight
 from gcs.operator.chosen_vehicle import ChosenVehicle
 from gcs.operator.client import Polling, StationEnded
@@ -77,6 +78,8 @@ class Plain:
         self._refused_velocities = False
         self._preflight_fails = False
         self._sent_at_once: list[TrackedRequest] = []
+        self._of_all: list[tuple[str, list[TrackedRequest]]] = []
+        """Lines that stop several vehicles, with their requests; until all of those are settled."""
         self._until_heard: list[line_parser.Line] = []
 
     def run(self, lines: LineQueue) -> int:
@@ -146,7 +149,28 @@ class Plain:
     def _send_at_once(self, line: line_parser.Line) -> None:
         assert isinstance(line.action, request_words.SendRequests)
         (request,) = line.action.requests
-        self._sent_at_once.append(self._dialogue.send(request, line.text))
+        self._sent_at_once.extend(self._send_stop(request, line.text))
+
+    def _send_stop(self, asked: ipc.Ask, text: str) -> list[TrackedRequest]:
+        """A stop of several vehicles is a request to each that flies: each has its own ending.
+
+        An abort is one request: the station is quicker, and knows best which of them fly.
+        """
+        every = asked.vehicle == ipc.EVERY or not self._connection.sysid
+        flying = _flying(self._dialogue.snapshot) if every and asked.word != "abort" else []
+        if len(flying) < 2:
+            return [self._dialogue.send(asked, text)]
+        each = [(msgspec.structs.replace(asked, vehicle=sysid), sysid) for sysid in flying]
+        sent = [self._dialogue.send(one, f"vehicle {sysid}: {one.word}") for one, sysid in each]
+        self._of_all.append((text, sent))
+        return sent
+
+    def _tell_of_all(self) -> None:
+        """What became of the stops of several vehicles that are settled: the worst of each."""
+        settled = [one for one in self._of_all if all(each.settled for each in one[1])]
+        for one in settled:
+            self._of_all.remove(one)
+            self._out(_worst(*one))
 
     def _tell_dropped(
         self, line: line_parser.Line | BadLine, by: line_parser.Line | BadLine
@@ -184,6 +208,10 @@ class Plain:
 
     def _act(self, line: line_parser.Line) -> None:
         match line.action:
+            case request_words.SendRequests((asked,)) if asked.word in request_words.STOPS:
+                sent = self._send_stop(asked, line.text)
+                if line.wait:
+                    self._dialogue.wait_until(lambda: all(each.settled for each in sent))
             case request_words.SendRequests(requests) if line.wait:
                 self._dialogue.send_in_turn(requests, line.text, lambda: not self._overtaken)
             case request_words.SendRequests(requests):
@@ -287,7 +315,7 @@ class Plain:
         if self._config.as_json:
             self._out(ipc.encode(event).decode().rstrip())
             return
-        if self._warnings.hides(event, request):
+        if self._warnings.hides(event, request) or self._says_nothing(event, request):
             return
         match event:
             case ipc.VerdictEvent() if request is not None:
@@ -297,13 +325,28 @@ class Plain:
                 self._out(event_text.answer_line(label, outcome, code, sentence))
             case ipc.EndingEvent() if request is not None:
                 seen = self._dialogue.snapshot
-                self._out(self._standstill.outcome(request.label, event, seen))
+                shown = seen is not None and request.sent.vehicle in (0, ipc.EVERY, seen.sysid)
+                told = self._standstill.outcome(request.label, event, seen if shown else None)
+                self._out(told)
             case ipc.LogEvent() if event.level >= self._config.min_level:
                 self._err(event_text.log_line(event))
             case ipc.Trouble() if not event.exit_code:
                 self._err("\n".join(event_text.trouble_lines(event)))
             case _:
                 pass
+        self._tell_of_all()
+
+    def _says_nothing(self, event: ipc.Event, request: TrackedRequest | None) -> bool:
+        """Of a typed velocity: that its stream is ended in good order, as one that was refused is
+        too.  That one's ending is the refusal, which has been told."""
+        word = "" if request is None else request.sent.word
+        match event:
+            case ipc.VerdictEvent(outcome="accepted"):
+                return word == "stream_end"
+            case ipc.EndingEvent(ended="complete"):
+                return word == "stream_end" or (word == "stream_begin" and self._velocity_refused)
+            case _:
+                return False
 
     def _show_end(self, ended: StationEnded) -> None:
         for line in event_text.end_lines(ended, simulated=self._config.simulated):
@@ -322,6 +365,25 @@ class Plain:
         elif self._preflight_fails:
             undone = ExitCode.DIFFERENT
         return self._dialogue.first_failure() or undone
+
+
+def _flying(seen: ipc.Snapshot | None) -> list[int]:
+    """The system ids of all that were not last seen on the ground."""
+    if seen is None:
+        return []
+    shown = [seen.sysid] if seen.vehicle and seen.landed != LandedState.ON_GROUND.name else []
+    return sorted(shown + [each.vehicle for each in seen.others if not each.on_ground])
+
+
+def _worst(text: str, sent: list[TrackedRequest]) -> str:
+    """The line of a stop of several vehicles: a refusal, else what is not complete."""
+    worst = max(sent, key=lambda each: (not each.completed, each.outcome is None))
+    if worst.outcome is None:
+        assert worst.verdict is not None
+        return f"{text}: {event_text.verdict_line(worst.label, worst.verdict)}"
+    if not worst.completed:
+        return f"{text}: {event_text.outcome_line(worst.label, worst.outcome)}"
+    return f"{text}: complete"
 
 
 def _chosen_before(stop: AtOnce) -> bool:
@@ -344,7 +406,7 @@ def overtaken(stop: AtOnce) -> str:
     assert isinstance(stop.line, line_parser.Line)
     count, text = len(stop.dropped), stop.line.text.removeprefix("!")
     lines = "the line before it is" if count == 1 else f"the {count} lines before it are"
-    in_turn = "hold" if text == "abort" else text
+    in_turn = text.replace("abort", "hold", 1)
     return (
         f"gcs: {stop.line.text} acted as soon as it was read: {lines} not done\n"
         f"  hint: write {in_turn} for a stop that waits for its turn"

@@ -13,6 +13,7 @@ from gcs import ipc
 from gcs.cli.fly.line_queue import LineQueue
 from gcs.cli.fly.plain import Plain, PlainConfig
 from gcs.exit_codes import ExitCode
+from gcs.operator.client import StationEvent
 from gcs.operator.errors import ExitError
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 
@@ -26,8 +27,10 @@ class Session:
         config: PlainConfig | None = None,
         scenario: str = "flight",
         rows: Sequence[ipc.PreflightRow] = (),
+        connection: FakeConnection | None = None,
     ):
-        self.connection = FakeConnection(FakeStation(scenario, preflight_rows=[*rows]))
+        station = FakeStation(scenario, preflight_rows=[*rows])
+        self.connection = connection or FakeConnection(station)
         self.interrupts = NoInterrupts()
         self.out: list[str] = []
         self.err: list[str] = []
@@ -108,8 +111,6 @@ def test_a_velocity_is_streamed_ten_times_a_second_and_ended() -> None:
     assert session.out[4:] == [
         "velocity 1 -2 0.5 3: accepted",
         "velocity 1 -2 0.5 3: complete",
-        "stream end: accepted",
-        "stream end: complete",
         "goto 1 0 2: accepted",
         "goto 1 0 2: complete",
     ]
@@ -125,8 +126,12 @@ def test_a_velocity_that_is_refused_on_the_way_is_told_and_ended() -> None:
     session = Session("arm\ntakeoff 2\nvelocity 99 0 0 3\nland\n", PlainConfig(strict=True))
     samples = [sent for sent in session.connection.sent if isinstance(sent, ipc.Stream)]
     assert len(samples) == 1
-    assert "velocity 99 0 0 3: refused POLICY: too fast" in session.out
-    assert session.out[-2:] == ["land: accepted", "land: complete"]
+    assert session.out[4:] == [
+        "velocity 99 0 0 3: accepted",
+        "velocity 99 0 0 3: refused POLICY: too fast",
+        "land: accepted",
+        "land: complete",
+    ]
     assert session.exit_code == ExitCode.REFUSED_BY_GATE
 
 
@@ -272,12 +277,13 @@ def test_an_abort_in_a_pipe_acts_while_a_goto_is_under_way_and_drops_what_has_no
     ]
 
 
-def test_an_abort_in_a_script_drops_the_lines_before_it() -> None:
-    session = Session("arm\ntakeoff 2\nabort\nphoto\n")
+@pytest.mark.parametrize(("abort", "in_turn"), [("abort", "hold"), ("abort all", "hold all")])
+def test_an_abort_in_a_script_drops_the_lines_before_it(abort: str, in_turn: str) -> None:
+    session = Session(f"arm\ntakeoff 2\n{abort}\nphoto\n")
     assert session.sent_words == ["abort", "photo"]
     assert (
-        "gcs: abort acted as soon as it was read: the 2 lines before it are not done\n"
-        "  hint: write hold for a stop that waits for its turn"
+        f"gcs: {abort} acted as soon as it was read: the 2 lines before it are not done\n"
+        f"  hint: write {in_turn} for a stop that waits for its turn"
     ) in session.err
 
 
@@ -406,6 +412,62 @@ def test_what_follows_a_choice_is_for_that_vehicle_and_a_stop_of_all_for_every_o
     assert ipc.Show(2) in session.connection.sent
     assert any(line.startswith("vehicle 2: GROUNDED") for line in session.out)
     assert any("from 1 to 255, got 300" in line for line in session.err)
+
+
+class TwoFlown(FakeConnection):
+    """Vehicle 2 flies for itself; what names no vehicle is for the first."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.second = FakeStation()
+
+    def send(self, command: ipc.Command) -> bool:
+        if isinstance(command, ipc.Ask) and command.vehicle == 2:
+            self.sent.append(command)
+            self._events.extend(self.second.handle(command, self.time_s))
+            return True
+        return super().send(command)
+
+    def _ended_or_tick(self) -> Sequence[StationEvent]:
+        told = self.second.tick(self.time_s)
+        self.station.others = [
+            ipc.OtherVehicle(sysid, one.state, "NOMINAL", on_ground=one.pos[2] <= 0.1)
+            for sysid, one in ((1, self.station), (2, self.second))
+        ]
+        return [
+            *super()._ended_or_tick(),
+            *(each for each in told if not isinstance(each, ipc.Snapshot)),
+        ]
+
+
+BOTH_UP = "vehicle 1\narm\ntakeoff 2\nvehicle 2\narm\ntakeoff 12\n"
+
+
+def test_a_landing_of_all_is_complete_when_the_last_has_landed() -> None:
+    session = Session(f"{BOTH_UP}land all\n", connection=TwoFlown())
+    assert session.out[-5:] == [
+        "vehicle 1: land: accepted",
+        "vehicle 2: land: accepted",
+        "vehicle 1: land: complete",
+        "vehicle 2: land: complete",
+        "land all: complete",
+    ]
+    assert session.connection.station.state == "GROUNDED"
+    assert isinstance(session.connection, TwoFlown)
+    assert session.connection.second.state == "GROUNDED"
+
+
+def test_a_landing_of_all_ends_with_the_worst_of_its_endings() -> None:
+    script = f"{BOTH_UP}land all &\nwait 2\nhold\n"
+    session = Session(script, PlainConfig(strict=True), connection=TwoFlown())
+    assert session.out[-5:] == [
+        "vehicle 1: land: complete",
+        "vehicle 2: land: aborted OPERATOR",
+        "land all: vehicle 2: land: aborted OPERATOR",
+        "hold: accepted",
+        "hold: complete",
+    ]
+    assert session.exit_code == ExitCode.NOT_COMPLETED
 
 
 def test_an_abort_that_overtakes_a_choice_is_for_every_vehicle() -> None:

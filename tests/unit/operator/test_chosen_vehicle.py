@@ -20,6 +20,7 @@ ASKS: tuple[ipc.Command, ...] = (
     ipc.Preflight(2),
     ipc.Leave("quit"),
     ipc.Ask(3, "abort", vehicle=ipc.EVERY),
+    ipc.Ask(4, "land", vehicle=3),
 )
 
 
@@ -35,20 +36,20 @@ class Told(FakeConnection):
         return Polled(events)
 
 
-def test_what_is_asked_is_asked_of_the_chosen_one_but_a_stop_of_every_one() -> None:
+def test_what_is_asked_is_asked_of_the_chosen_one_unless_it_names_its_own() -> None:
     told = Told()
     chosen = ChosenVehicle(told)
     for command in ASKS:
         chosen.send(command)
     assert told.sent == [*ASKS], "none is chosen: the station knows what that means"
     chosen.choose(2)
-    chosen.send(ipc.Check(ipc.Ask(4, "arm")))
+    chosen.send(ipc.Check(ipc.Ask(5, "arm")))
     for command in ASKS:
         chosen.send(command)
     show, check, *asked = told.sent[len(ASKS) :]
     assert show == ipc.Show(2)
-    assert check == ipc.Check(ipc.Ask(4, "arm", vehicle=2))
-    assert [getattr(each, "vehicle", None) for each in asked] == [2, 2, 2, None, ipc.EVERY]
+    assert check == ipc.Check(ipc.Ask(5, "arm", vehicle=2))
+    assert [getattr(each, "vehicle", None) for each in asked] == [2, 2, 2, None, ipc.EVERY, 3]
 
 
 def test_snapshots_of_the_one_before_that_were_under_way_are_passed_over() -> None:
