@@ -119,7 +119,7 @@ def test_a_place_on_the_map(personality: Personality, amsl: bool) -> None:
         ({"move_enu": (500.0, 0.0, 0.0)}, "refused OUTSIDE_FENCE"),
         ({"move_body": (0.0, 0.0, 500.0)}, "refused TOO_HIGH"),
         ({"goal_global": (0.0, 0.0, 3.0)}, "refused TOO_FAR"),
-        ({"goal_global": (91.0, 0.0, 3.0)}, "refused NON_FINITE"),
+        ({"goal_global": (91.0, 0.0, 3.0)}, "refused BAD_PARAMETER"),
         ({"goal_global": (None, None, 3.0)}, "refused NON_FINITE"),
         ({"move_enu": (0.0, None, 0.0)}, "refused NON_FINITE"),
         ({"move_enu": (0.0, 0.0, 0.0), "goal_enu": (0.0, 0.0, 3.0)}, "refused BAD_REQUEST"),

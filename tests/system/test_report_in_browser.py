@@ -49,7 +49,7 @@ def test_every_plot_is_drawn_without_a_word_on_the_console(
 ) -> None:
     page = opened(browser, written(tmp_path, a_flight_that_loses_gps()))
     plots = page.evaluate("document.querySelectorAll('.plot').length")
-    assert plots == 7
+    assert plots == 6  # height, speed, place, battery, link, GPS: it has no ATTITUDE
     # A canvas that nothing was drawn on has one colour only: none.
     drawn = """[...document.querySelectorAll('.plot canvas')].filter((canvas) => {
         const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;

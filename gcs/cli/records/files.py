@@ -33,7 +33,8 @@ class FileOfKind(click.Path):
         try:
             return Path(str(super().convert(value, param, ctx)))
         except click.BadParameter as error:
-            raise ExitError(ExitCode.BAD_FILE, error.message.rstrip(".")) from None
+            hint = "gcs log info --last tells the newest record, and where it is"
+            raise ExitError(ExitCode.BAD_FILE, error.message.rstrip("."), hint) from None
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str

@@ -36,9 +36,9 @@ FOR_THE_RECORD_HZ: dict[int, float] = {
     MsgId.RC_CHANNELS: 1.0,
     MsgId.WIND: 1.0,
 }
-"""What an ArduPilot is asked for once, so that a report can tell of motors, sticks, vibration and
-wind: it sends none of them unasked.  A PX4 does, and more often.  No safety stands on them, so
-clients of the bridge may change their rates."""
+"""What an ArduPilot is asked for once, when all that is needed has come, so that a report can tell
+of motors, sticks, vibration and wind: it sends none of them unasked.  A PX4 does, and more often.
+No safety stands on them, so clients of the bridge may change their rates."""
 
 SENT_BY: dict[int, str] = {
     MsgId.ESTIMATOR_STATUS: "px4",
@@ -72,6 +72,7 @@ class Discovery:
         self._asked_ns = 0
         self._longest_ns = times.real_ns(LONGEST_PAUSE_NS)
         self._pause_ns = self._ask_again_ns
+        self._record_asked = False
         self._streams_asked_ns = 0
         self._silence_told = False
 
@@ -110,9 +111,6 @@ class Discovery:
             yield _request(telemetry, MsgId.HOME_POSITION)
         if first:
             yield _request(telemetry, MsgId.AUTOPILOT_VERSION)
-            if telemetry.autopilot.name == "ardupilot":
-                for msgid, hz in FOR_THE_RECORD_HZ.items():
-                    yield message_interval(telemetry, msgid, hz)
         everything = first or telemetry.pos_ned is None
         if self._silent(telemetry, now_ns) and now_ns - self._streams_asked_ns >= self._pause_ns:
             everything = True
@@ -123,6 +121,11 @@ class Discovery:
             yield from self.again(telemetry, self._needed_hz)
         elif now_ns - telemetry.landed_ns > self._ask_again_ns:
             yield from self.again(telemetry, (MsgId.EXTENDED_SYS_STATE,))
+        elif telemetry.autopilot.name == "ardupilot" and not self._record_asked:
+            # Such commands wait for one another's answers, so these do not come first.
+            self._record_asked = True
+            for msgid, hz in FOR_THE_RECORD_HZ.items():
+                yield message_interval(telemetry, msgid, hz)
 
     def again(self, telemetry: Telemetry, msgids: Iterable[int]) -> Iterator[CommandLong]:
         """Commands that ask for these streams, as far as its autopilot has them."""

@@ -71,7 +71,7 @@ WRONG = [
     ("recover killed -o nowhere/out", 7, "cannot write"),
     ("layout flight -o nowhere/out", 7, "cannot write"),
     ("info", 2, "--last"),
-    ("info nothing", 2, "nothing.mcap"),
+    ("info nothing", 4, "nothing.mcap"),
     ("cut flight -o out", 2, "--from"),
     ("cut flight --from 3 --to 2 -o out", 2, ""),
     ("cut flight --around 7 --to 2 -o out", 2, "--around"),
