@@ -8,10 +8,16 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pygments.lexers import TextLexer
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))
-from reference import write  # type: ignore[import-not-found]  # noqa: E402
+from reference import write  # noqa: E402
 
 write(ROOT / "docs" / "reference")
 
@@ -32,3 +38,8 @@ html_theme = "furo"
 html_title = "mavgate"
 html_show_sphinx = False
 html_copy_source = False
+
+
+def setup(app: Sphinx) -> None:
+    """Pictures of a terminal, which missions/lab3 has, are plain text."""
+    app.add_lexer("terminal", TextLexer)
