@@ -85,7 +85,7 @@ NOBODY = "--link udpin://127.0.0.1:0"
 
 @pytest.mark.parametrize(
     "line",
-    one_in(3, [f"param list {NOBODY}", "mission show demo", f"topic hz {NOBODY}"]),
+    one_in(3, [f"param list {NOBODY}", "mission show demo", f"preflight {NOBODY}"]),
 )
 def test_any_other_command_ends_so_or_has_ended_before(line: str) -> None:
     ended = interrupt(0.3, *line.split())
