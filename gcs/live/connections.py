@@ -28,10 +28,10 @@ from websockets.server import ServerProtocol
 from websockets.typing import Subprotocol
 
 from gcs.live.admission import Admission
-from gcs.live.bucket import Bucket
 from gcs.live.effects import Frame
 from gcs.live.inputs import Came, Gone, Said
 from gcs.live.protocol import SUBPROTOCOLS
+from gcs.live.rate_limit import RateLimit
 
 FIRST_PORTS = range(8765, 8775)
 """Tried in turn where no port is asked for; 8765 is what viewers offer."""
@@ -81,7 +81,7 @@ class Viewer:
     opened_ns: int
     heard_ns: int
     protocol: ServerProtocol
-    frames: Bucket
+    frames: RateLimit
     open: bool = False
     waiting: deque[Frame] = field(default_factory=deque)
     waiting_bytes: int = 0
@@ -200,7 +200,7 @@ class Connections:
             protocol = ServerProtocol(
                 subprotocols=known, max_size=MAX_MESSAGE_BYTES, logger=_LOGGER
             )
-            frames = Bucket.full(FRAMES_A_SECOND, BURST_FRAMES, now_ns)
+            frames = RateLimit.full(FRAMES_A_SECOND, BURST_FRAMES, now_ns)
             viewer = Viewer(self._came, sock, now_ns, now_ns, protocol, frames)
             self._viewers[self._came] = viewer
 

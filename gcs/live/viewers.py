@@ -15,7 +15,6 @@ from dataclasses import dataclass, field
 import msgspec
 
 from gcs import ipc
-from gcs.live.bucket import Bucket
 from gcs.live.clicked_goals import BadMessageError, clicked_goal
 from gcs.live.effects import Close, Effect, Join, Notice, Reply, Send, Values
 from gcs.live.inputs import (
@@ -30,6 +29,7 @@ from gcs.live.inputs import (
     Told,
 )
 from gcs.live.parameters import Parameters
+from gcs.live.rate_limit import RateLimit
 from gcs.live.services import (
     SERVICES,
     Answer,
@@ -85,10 +85,10 @@ class Viewers:
     def __init__(self, code: str, now_ns: int) -> None:
         """`code`: what `take_control` must bring."""
         self._code = code
-        self._looking = Bucket.full(LOOKING_A_SECOND, BURST_LOOKING, now_ns)
+        self._looking = RateLimit.full(LOOKING_A_SECOND, BURST_LOOKING, now_ns)
         self._connections = {LOOKING: _Connection()}
-        self._buckets: dict[int, Bucket] = {}
-        self._wrong_codes = Bucket.full(WRONG_CODES_A_SECOND, BURST_WRONG_CODES, now_ns)
+        self._buckets: dict[int, RateLimit] = {}
+        self._wrong_codes = RateLimit.full(WRONG_CODES_A_SECOND, BURST_WRONG_CODES, now_ns)
         self._parameters = Parameters()
         self._snapshot: ipc.Snapshot | None = None
         self._noticed_ns = now_ns - NOTICE_NS
@@ -198,10 +198,10 @@ class Viewers:
         connection.waiting[sent.id] = _Waiting(call, now_ns + CALL_WAIT_NS)
         return Send(sender, sent)
 
-    def _bucket(self, viewer: int, now_ns: int) -> Bucket:
+    def _bucket(self, viewer: int, now_ns: int) -> RateLimit:
         known = self._buckets.get(viewer)
         if known is None:
-            known = self._buckets[viewer] = Bucket.full(CALLS_A_SECOND, BURST_CALLS, now_ns)
+            known = self._buckets[viewer] = RateLimit.full(CALLS_A_SECOND, BURST_CALLS, now_ns)
         return known
 
     def _notice(self, text: str, now_ns: int) -> list[Effect]:

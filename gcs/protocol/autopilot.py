@@ -136,6 +136,8 @@ class Autopilot:
     """NAV_TAKEOFF's altitude is above mean sea level (px4), or above home (ardupilot)."""
     blank: float
     """What an unused position parameter is to be filled with."""
+    arms_in: str = ""
+    """A mode in which it can be armed."""
     climb_ends_within_m: float = 0.0
     """How far below its height the vehicle may end a take-off, before its parameter is read."""
     commanded: bool = True
@@ -159,6 +161,7 @@ PX4 = Autopilot(
     mode_in_two_parts=True,
     takeoff_above_sea=True,
     blank=IGNORED,
+    arms_in="AUTO.LOITER",
     climb_ends_within_m=0.8,  # NAV_MC_ALT_RAD
 )
 
@@ -180,6 +183,7 @@ ARDUPILOT = Autopilot(
     mode_in_two_parts=False,
     takeoff_above_sea=False,
     blank=0.0,
+    arms_in="GUIDED",
 )
 
 GENERIC = Autopilot(

@@ -25,11 +25,11 @@ class FenceZone(msgspec.Struct, frozen=True):
 
     name: str
     inclusion: bool
-    corners: list[PointEn]
-    centre: PointEn | None
-    radius_m: float
-    floor_up_m: float | None
-    ceiling_up_m: float | None
+    corners: list[PointEn] = []
+    centre: PointEn | None = None
+    radius_m: float = 0.0
+    floor_up_m: float | None = None
+    ceiling_up_m: float | None = None
 
 
 class Fence(msgspec.Struct, frozen=True):
@@ -41,18 +41,11 @@ class Fence(msgspec.Struct, frozen=True):
     margin_v_m: float
 
 
-class _Zone(msgspec.Struct):
+class _Zone(FenceZone, frozen=True):
     """A zone of either form."""
 
-    name: str
-    inclusion: bool
-    corners: list[PointEn] = []
-    centre: PointEn | None = None
     corners_en: list[tuple[float, float]] = []
     centre_en: tuple[float, float] | None = None
-    radius_m: float = 0.0
-    floor_up_m: float | None = None
-    ceiling_up_m: float | None = None
 
 
 class _Fence(msgspec.Struct):

@@ -99,8 +99,6 @@ class Check:
     judge: Callable[[Known], Found]
 
 
-ARMS_IN: Final[Mapping[str, str]] = {"px4": "AUTO.LOITER", "ardupilot": "GUIDED"}
-
 OF_ROWS: Final[Mapping[str, tuple[Condition, ...]]] = {
     "link": (Condition.LINK_POOR,),
     "gps": (Condition.GPS_LOST, Condition.GPS_POOR),
@@ -312,7 +310,7 @@ def known(vehicle: Vehicle, now_ns: int) -> Known | None:
     losses = vehicle.presence.losses
     missions = vehicle.missions
     autopilot = telemetry.autopilot
-    arming_mode = ARMS_IN.get(autopilot.name, "")
+    arming_mode = autopilot.arms_in
     return Known(
         policy=vehicle.port.policy,
         label=telemetry.label,

@@ -102,7 +102,7 @@ class GateScene(Deriver):
             f"{item.phase} {item.request_id}",
             stamp(now_ns),
             GOAL_NS,
-            frame_id=self._vehicle(item.vehicle).frame_id,
+            frame_id="map" if vehicle is None else vehicle.frame_id,
             spheres=[ball(at, size_m, color(rgb, 0.9))] if goal is not None else [],
             lines=[line([pos_enu, at], color(rgb, 0.8))] if pos_enu and goal is not None else [],
             texts=[label(_label_place(pos_enu, at, away_m), _words(item), rgb)],

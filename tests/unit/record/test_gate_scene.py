@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 
 from gcs.report import (
@@ -45,6 +46,14 @@ def test_a_refused_goal_is_a_red_ball_with_its_reason(tmp_path: Path) -> None:
     assert ends == [(0.0, 0.0, 2.0), goal.enu]
     assert [text.text for text in entity.texts] == ["REFUSED TOO_CLOSE: 0.4 m from the mast"]
     assert 3 <= entity.lifetime.seconds <= 4
+
+
+def test_a_goal_that_no_vehicle_can_have_takes_no_frames_from_the_first_one(tmp_path: Path) -> None:
+    refused = decided(3, "refused", goal=FAR, code="NO_VEHICLE", sentence="none is heard")
+    path = record(tmp_path, [msgspec.structs.replace(refused, vehicle=0), pose((0.0, 0.0, -2.0))])
+    (goal,) = drawn(path, "/gate/goals")
+    (model,) = drawn(path, "/vehicle/1/model")
+    assert (goal.frame_id, model.frame_id) == ("map", "base_link")
 
 
 def test_an_accepted_goal_is_green_and_says_what_was_asked(tmp_path: Path) -> None:

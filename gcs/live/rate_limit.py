@@ -1,4 +1,4 @@
-"""A rate with a few more at once, for what viewers ask."""
+"""How often something may be asked by viewers: a token bucket."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(slots=True)
-class Bucket:
+class RateLimit:
     """So many a second, and a few more at once."""
 
     per_second: float
@@ -15,7 +15,7 @@ class Bucket:
     at_ns: int
 
     @classmethod
-    def full(cls, per_second: float, burst: float, now_ns: int) -> Bucket:
+    def full(cls, per_second: float, burst: float, now_ns: int) -> RateLimit:
         return cls(per_second, burst, burst, now_ns)
 
     def take(self, now_ns: int) -> bool:
