@@ -11,13 +11,16 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TypeAlias
+from itertools import pairwise
+from typing import Final, TypeAlias
 
 from gcs.frames import Vec3
 from gcs.plan.model import AutopilotName
 
 NorthEastOf: TypeAlias = Callable[[float, float], tuple[float, float]]
 """(lat_deg, lon_deg) -> (north_m, east_m) of the local origin: the vehicle's own projection."""
+CIRCLE_SIDES: Final = 24
+"""Of the polygon that stands for a circle; its corners are 0.9 % of the radius outside."""
 
 
 class LegKind(Enum):
@@ -197,6 +200,19 @@ class FlightPath:
     @property
     def segments(self) -> tuple[tuple[Vec3, Vec3], ...]:
         return tuple((leg.from_ned, leg.to_ned) for leg in self.legs)
+
+    @property
+    def flown(self) -> Iterator[tuple[Vec3, Vec3]]:
+        """The legs, and the circles as polygons about them."""
+        yield from self.segments
+        for circle in self.circles:
+            north_m, east_m, down_m = circle.centre_ned
+            reach_m = circle.radius_m / math.cos(math.pi / CIRCLE_SIDES)
+            turns = [math.tau * side / CIRCLE_SIDES for side in range(CIRCLE_SIDES + 1)]
+            yield from pairwise(
+                (north_m + reach_m * math.cos(turn), east_m + reach_m * math.sin(turn), down_m)
+                for turn in turns
+            )
 
     @property
     def corners(self) -> Iterator[Vec3]:

@@ -139,11 +139,11 @@ def _checked(
     except BadAskError as error:
         return ipc.Checked(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
     gate, goal = vehicle.gate, None
+    near = separation.why_not(vehicles, owner, 0, request, now_ns)
     if isinstance(request, GoTo):
-        goal = why_not_once_hovering(gate.memory, request.goal_ned, request.yaw_rad)
-        near = separation.why_not(vehicles, owner, request.goal_ned, now_ns)
-        if near is not None:
-            return announcements.checked(ask, near, goal or near)
+        goal = why_not_once_hovering(gate.memory, request.goal_ned, request.yaw_rad) or near
+    if near is not None:
+        return announcements.checked(ask, near, goal)
     verdict = gate.would(request, source_of(operator), now_ns)
     if vehicle.rule is not None and isinstance(request, GoTo) and verdict and not verdict.refusal:
         verdict = None  # the operator's own rule is asked first, and only once it is sent

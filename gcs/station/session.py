@@ -34,7 +34,7 @@ from gcs.gate.condition import Condition, Severity
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import PositionSeen, Requested, Tick
 from gcs.gate.machine.gate import Gate
-from gcs.gate.requests import EndStream, GoTo
+from gcs.gate.requests import EndStream
 from gcs.gate.states import Control, State
 from gcs.protocol.effects import Address, Send
 from gcs.session import announcements
@@ -359,9 +359,12 @@ class Session:
                 if len(self._vehicles) > 1:
                     work += self._separation.moved(self._vehicles, owner, now_ns)
                 return work
-            case GateInput(Requested(request_id, _, GoTo(goal_ned))) if (
-                refusal := self._separation.why_not(self._vehicles, owner, goal_ned, now_ns)
+            case GateInput(Requested(request_id, _, request)) if (
+                refusal := self._separation.why_not(
+                    self._vehicles, owner, request_id, request, now_ns
+                )
             ):
+                vehicle.orbits.refused(request_id)
                 return self._operators.refuse_goal(request_id, refusal)
             case GateInput(given):
                 if not self._bridge.open:

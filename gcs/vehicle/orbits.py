@@ -109,6 +109,10 @@ class Orbits:
         guidance = Guidance(orbit, memory.pos_ned, braking, policy.stream)
         self.flown = Flown(operator, guidance, task, now_ns)
 
+    def refused(self, request_id: int) -> None:
+        """The gate is not asked about it."""
+        self.asked.pop(request_id, None)
+
     def ended(self, request_id: int) -> None:
         """A request is over, and with it the orbit that it has asked for."""
         if self.flown is not None and self.flown.task == request_id:

@@ -102,8 +102,12 @@ class Vehicle(VehicleParts):
 
     def flying(self, now_ns: int) -> Telemetry | None:
         """What it tells, if it flies and its position is fresh."""
+        return None if self.port.gate.state in NOT_FLYING else self.placed(now_ns)
+
+    def placed(self, now_ns: int) -> Telemetry | None:
+        """What it tells, if its position is fresh."""
         telemetry = self.telemetry
-        if telemetry is None or telemetry.pos_ned is None or self.port.gate.state in NOT_FLYING:
+        if telemetry is None or telemetry.pos_ned is None:
             return None
         fresh = now_ns - telemetry.position_ns <= telemetry.position_age_ns
         return telemetry if fresh else None

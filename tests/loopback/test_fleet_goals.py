@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import msgspec
+import pytest
+
 from gcs import ipc
 from gcs.frames import Vec3
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
 from gcs.session import inputs
 from tests.loopback.fleet import Fleet
-from tests.loopback.flight import MISSIONS
+from tests.loopback.flight import MISSIONS, Personality
 
 APART_M = 60.0
 """Vehicle 2 starts so far east of vehicle 1; both fly 5 m up."""
@@ -20,20 +23,77 @@ class Crossing(Fleet):
     def __init__(self, policy: str = "") -> None:
         super().__init__(("px4", "px4"), policy=parse_policy(policy, "test"), apart_m=APART_M)
         self.all_flying()
+        self.take()
+
+    def take(self) -> None:
         self.feed(inputs.OperatorLine(1, ipc.Ask(1000, "station_take")))
         self.last_id = 2000
 
     def send(self, sysid: int, goal_enu: Vec3) -> ipc.VerdictEvent:
         """A goal in the vehicle's own frame, from its start; its verdict."""
+        return self.judged(ipc.Ask(0, "goto", goal_enu=goal_enu, vehicle=sysid))
+
+    def judged(self, ask: ipc.Ask) -> ipc.VerdictEvent:
+        """What is asked for, judged as it was when it was only checked."""
         self.last_id += 1
-        ask = ipc.Ask(self.last_id, "goto", goal_enu=goal_enu, vehicle=sysid)
+        ask = msgspec.structs.replace(ask, id=self.last_id)
         self.feed(inputs.OperatorLine(1, ipc.Check(ask)))
         checked = self.of(ipc.Checked)[-1]
         self.feed(inputs.OperatorLine(1, ask))
-        self.run(0.1)
+        self.until(lambda: bool(self.verdicts(self.last_id)))
         (verdict,) = self.verdicts(self.last_id)
         assert (checked.outcome, checked.code) == (verdict.outcome, verdict.code)
         return verdict
+
+
+BESIDE_M = 4.6
+"""Nearer than `[separation] least_m`."""
+
+
+class Beside(Crossing):
+    """Two that stand beside each other, the first of them 5 m up when it is asked for."""
+
+    def __init__(self, personality: Personality) -> None:
+        Fleet.__init__(self, (personality, personality), apart_m=BESIDE_M)
+        self.all_connected()
+        self.take()
+
+    def asks(self, sysid: int, word: str, up_m: float | None = None) -> ipc.VerdictEvent:
+        return self.judged(ipc.Ask(0, word, up_m=up_m, vehicle=sysid))
+
+    def arms(self, sysid: int) -> None:
+        assert self.asks(sysid, "arm").outcome == "accepted"
+        assert self.done(self.last_id) == "complete"
+
+    def climbs(self, sysid: int) -> None:
+        self.arms(sysid)
+        assert self.asks(sysid, "takeoff", 5.0).outcome == "accepted", self.told()
+        assert self.done(self.last_id) == "complete", self.told()
+
+
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+def test_one_that_stands_beside_another_climbs_beside_it(personality: Personality) -> None:
+    """Its place is as near to where the other hovers as they stood: that is no way that crosses."""
+    flight = Beside(personality)
+    flight.climbs(1)
+    flight.climbs(2)
+
+
+def test_a_climb_into_where_another_one_flies_is_refused() -> None:
+    flight = Beside("px4")
+    flight.climbs(1)
+    assert flight.send(1, (0.0, 0.0, 12.0)).outcome == "accepted"
+    flight.reaches(1, State.HOVERING, 60.0)
+    assert flight.send(1, (BESIDE_M, 0.0, 12.0)).outcome == "accepted", "the other one stands"
+    flight.reaches(1, State.HOVERING, 60.0)
+    flight.arms(2)
+    refused = flight.asks(2, "takeoff", 10.0)
+    assert (refused.code, refused.numbers["other_vehicle"]) == ("OTHER_VEHICLE", 1.0)
+    assert refused.sentence.startswith("the climb comes as near as ")
+    least_m = refused.numbers["least_m"]
+    assert least_m is not None
+    assert least_m < 2.5
+    assert flight.asks(2, "takeoff", 5.0).outcome == "accepted", "7 m below it"
 
 
 def test_of_two_goals_whose_legs_cross_the_second_is_refused() -> None:
@@ -77,6 +137,39 @@ def test_all_of_the_mission_that_another_one_flies_is_in_the_way() -> None:
     flight.reaches(2, State.FLYING_MISSION)
     assert flight.send(1, (APART_M + 4.0, 8.0, 3.0)).code == "OTHER_VEHICLE"
     assert flight.send(1, (APART_M - 10.0, 8.0, 3.0)).outcome == "accepted"
+
+
+def test_an_orbit_that_is_asked_for_is_compared_whole() -> None:
+    """Vehicle 2 would fly round a place between both, past the one that hovers."""
+    flight = Crossing()
+    for number, radius_m, outcome in ((1001, 27.0, "refused"), (1002, 22.0, "accepted")):
+        circle = ipc.Circle((-30.0, 0.0, 5.0), radius_m=radius_m, speed_m_s=1.0, turns=0.0)
+        flight.feed(inputs.OperatorLine(1, ipc.Ask(number, "orbit", orbit=circle, vehicle=2)))
+        flight.run(0.5)
+        verdict = flight.verdicts(number)[0]
+        assert verdict.outcome == outcome, verdict
+        assert (flight.state_of(2) is State.STREAMING) == (outcome == "accepted")
+    assert flight.verdicts(1001)[0].sentence.startswith("the orbit comes as near as ")
+
+
+def test_a_mission_that_is_asked_for_is_compared_whole() -> None:
+    """It is verified from where the vehicle is, so that counts as it would be flown."""
+    flight = Crossing()
+    path = str(MISSIONS / "demo.toml")
+    ask = ipc.Ask(1001, "mission_upload", path=path, vehicle=2)
+    flight.feed(inputs.OperatorLine(1, ask))
+    assert flight.done(1001) == "complete", flight.told()
+    assert flight.send(1, (APART_M + 4.0, 8.0, 3.0)).outcome == "accepted"
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(1002, "mission_start", vehicle=2)))
+    flight.until(lambda: bool(flight.verdicts(1002)))
+    (refused,) = flight.verdicts(1002)
+    assert (refused.code, flight.state_of(2)) == ("OTHER_VEHICLE", State.HOVERING)
+    assert refused.sentence.startswith("the mission comes as near as ")
+    flight.reaches(1, State.HOVERING, 60.0)
+    assert flight.send(1, (APART_M - 40.0, 30.0, 3.0)).outcome == "accepted"
+    flight.reaches(1, State.HOVERING, 60.0)
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(1003, "mission_start", vehicle=2)))
+    flight.reaches(2, State.FLYING_MISSION)
 
 
 def test_two_goals_of_one_moment_are_compared_too() -> None:

@@ -8,10 +8,15 @@ whenever each is flown.  In one horizontal frame, metres and seconds.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from gcs.frames import Vec3
 from gcs.gate.policy.policy import SeparationLimits
+
+Leg: TypeAlias = tuple[Vec3, Vec3]
+Legs: TypeAlias = list[Leg]
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +93,38 @@ def between_legs_m(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> float:
         if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
             found.append(math.dist(_along(a, u, s), _along(c, v, t)))
     return min(found)
+
+
+def legs_near(ways: Sequence[Leg], others: Sequence[Leg], within_m: float) -> tuple[Legs, Legs]:
+    """Of each those legs that may come nearer than that to one of the other: most of two long ways
+    need not be compared leg by leg."""
+    near = _in_box(ways, _box(others), within_m)
+    others = _in_box(others, _box(near), within_m)
+    return _in_box(near, _box(others), within_m), others
+
+
+def _box(legs: Sequence[Leg]) -> tuple[Vec3, Vec3]:
+    """The least and the greatest of each number; of what is not finite all there is."""
+    points = [point for leg in legs for point in leg]
+    if not all(math.isfinite(number) for point in points for number in point):
+        return (-math.inf,) * 3, (math.inf,) * 3
+    if not points:
+        return (math.inf,) * 3, (-math.inf,) * 3
+    norths, easts, downs = zip(*points, strict=True)
+    return (min(norths), min(easts), min(downs)), (max(norths), max(easts), max(downs))
+
+
+def _in_box(legs: Sequence[Leg], box: tuple[Vec3, Vec3], within_m: float) -> Legs:
+    """Those that reach into the box, or nearer to it than that."""
+    low, high = box
+    return [
+        (a, b)
+        for a, b in legs
+        if not any(
+            max(a[n], b[n]) < low[n] - within_m or min(a[n], b[n]) > high[n] + within_m
+            for n in range(3)
+        )
+    ]
 
 
 def _to_leg_m(p: Vec3, a: Vec3, b: Vec3) -> float:

@@ -1,30 +1,52 @@
 """Whether the vehicles of one session come too close to each other.
 
 Looked at with every position of one that flies, against all others that fly: as a condition of
-both.  And with every goal, before the gate sees it: its leg is compared with what the others fly
-(`ways.py`), whenever each is there.  Each position is in its own vehicle's
-frame, so it goes through latitude and longitude where the frames differ.  A vehicle without an
-origin or a fresh position is compared with nobody: that it lacks them is a condition of its own.
+both.  And with every goal, take-off, orbit and mission start, before the gate sees it: its way is
+compared with what the others fly (`ways.py`), whenever each is there.  Who is nearer already may
+fly where it comes no nearer; from the ground, as near as the other's take-off place is.
+
+Each position is in its own vehicle's frame, so it goes through latitude and longitude where the
+frames differ.  A vehicle without an origin or a fresh position is compared with nobody: that it
+lacks them is a condition of its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Callable, Iterable
+from typing import Final
 
 from gcs.frames import Vec3
-from gcs.gate.airspace.separation import Track, between_legs_m, closest_approach, is_too_close
+from gcs.gate.airspace.separation import (
+    Leg,
+    Track,
+    between_legs_m,
+    closest_approach,
+    is_too_close,
+    legs_near,
+)
 from gcs.gate.condition import Condition
 from gcs.gate.policy.policy import SeparationLimits
 from gcs.gate.refusal import Code, Refusal
+from gcs.gate.requests import BeginStream, GoTo, Request, StartMission, TakeOff
 from gcs.session.work import ForOwner, Work, condition
 from gcs.station.fleet.neighbours import into_frame_of
-from gcs.station.fleet.ways import Leg, legs_of
+from gcs.station.fleet.ways import legs_asked, legs_of
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
 
-LESS_M = 0.1
+LESS_M: Final = 0.1
 """Vehicles that are too close already may fly where they come no nearer than that."""
+SWAYS_M: Final = 0.5
+"""One that hovers over its take-off place may be beside it by so much."""
+COMPARED: Final[dict[type, str]] = {
+    GoTo: "the leg",
+    TakeOff: "the climb",
+    BeginStream: "the orbit",
+    StartMission: "the mission",
+}
+"""The requests whose ways are compared with what the others fly."""
 
 
 class Separation:
@@ -43,30 +65,38 @@ class Separation:
                 work += self._pair(vehicles, slot, other, now_ns)
         return work
 
-    def why_not(self, vehicles: Vehicles, slot: int, goal_ned: Vec3, now_ns: int) -> Refusal | None:
-        """Why the vehicle in that slot may not fly straight to a goal: its leg comes too close to
-        another vehicle's.  Of one on the ground the gate says why it may not."""
-        here = vehicles.of_owner(slot).flying(now_ns)
+    def why_not(
+        self, vehicles: Vehicles, slot: int, request_id: int, request: Request, now_ns: int
+    ) -> Refusal | None:
+        """Why the vehicle in that slot may not fly what is asked for: its way comes too close to
+        another vehicle's.  What cannot be flown at all the gate refuses, and says why."""
+        if type(request) not in COMPARED or len(vehicles) < 2:
+            return None
+        vehicle = vehicles.of_owner(slot)
+        here = vehicle.placed(now_ns)
         if here is None or here.pos_ned is None:
             return None
+        way = legs_asked(vehicle, request_id, request, here.pos_ned)
         for number, other in enumerate(vehicles):
             there = None if number == slot else other.flying(now_ns)
-            if there is None or there.pos_ned is None:
-                continue
-            moved = into_frame_of(here, there)
-            if moved is None:
+            moved = None if there is None else into_frame_of(here, there)
+            if not way or there is None or there.pos_ned is None or moved is None:
                 continue
             legs = [(moved(a), moved(b)) for a, b in legs_of(other, there.pos_ned)]
             wrong_m = (here.health.accuracy_h_m or 0.0) + (there.health.accuracy_h_m or 0.0)
-            now_m = _least_m(here.pos_ned, here.pos_ned, legs) - wrong_m
-            least_m = max(0.0, _least_m(here.pos_ned, goal_ned, legs) - wrong_m)
-            if least_m < min(self._limits.least_m, now_m - LESS_M):
-                return self._refusal(other, least_m)
+            if vehicle.flying(now_ns) is None:
+                now_m = _stood_apart_m(here.pos_ned, there, moved) - SWAYS_M
+            else:
+                now_m = _least_m([(here.pos_ned, here.pos_ned)], legs) - LESS_M
+            keep_m = min(self._limits.least_m, now_m - wrong_m)
+            least_m = max(0.0, _least_m(*legs_near(way, legs, keep_m + wrong_m)) - wrong_m)
+            if least_m < keep_m:
+                return self._refusal(COMPARED[type(request)], other, least_m)
         return None
 
-    def _refusal(self, other: Vehicle, least_m: float) -> Refusal:
+    def _refusal(self, what: str, other: Vehicle, least_m: float) -> Refusal:
         sentence = (
-            f"the leg comes as near as {least_m:.1f} m to where vehicle {other.sysid} flies "
+            f"{what} comes as near as {least_m:.1f} m to where vehicle {other.sysid} flies "
             f"({self._limits.least_m:g} m are to be kept)"
         )
         numbers = (
@@ -116,9 +146,17 @@ class Separation:
         )
 
 
-def _least_m(start: Vec3, end: Vec3, legs: Iterable[Leg]) -> float:
-    """From a leg to the nearest of those."""
-    return min(between_legs_m(start, end, *leg) for leg in legs)
+def _least_m(way: Iterable[Leg], legs: Iterable[Leg]) -> float:
+    """Between the nearest two; infinite where there are none."""
+    legs = list(legs)
+    return min((between_legs_m(*mine, *leg) for mine in way for leg in legs), default=math.inf)
+
+
+def _stood_apart_m(pos_ned: Vec3, there: Telemetry, moved: Callable[[Vec3], Vec3]) -> float:
+    """From where one stands to where the other took off, beside each other."""
+    if there.home_ned is None:
+        return math.inf
+    return math.dist(pos_ned[:2], moved(there.home_ned)[:2])
 
 
 def _track(telemetry: Telemetry, pos_ned: Vec3, now_ns: int) -> Track:

@@ -1,4 +1,5 @@
-"""What a vehicle flies, as verified: legs in its own local frame, from where it is."""
+"""What a vehicle flies, or would fly if a request were accepted: legs in its own local frame, from
+where it is."""
 
 from __future__ import annotations
 
@@ -8,13 +9,14 @@ from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.questions.returns import way_home
+from gcs.gate.airspace.separation import Leg
 from gcs.gate.machine.memory import Memory
-from gcs.gate.requests import GoTo
+from gcs.gate.requests import BeginStream, GoTo, Request, StartMission, TakeOff
 from gcs.gate.states import State
 from gcs.orbit.circle import Orbit
+from gcs.vehicle.gate_port import NOT_FLYING
 from gcs.vehicle.vehicle import Vehicle
 
-Leg = tuple[Vec3, Vec3]
 CHORD_OFF_M: Final = 0.1
 """How far a circle may lie beside the legs that stand for it."""
 
@@ -25,15 +27,30 @@ def legs_of(vehicle: Vehicle, pos_ned: Vec3) -> list[Leg]:
     """
     memory = vehicle.gate.memory
     if memory.state is State.STREAMING and vehicle.orbits.flown is not None:
-        circle = _round(vehicle.orbits.flown.guidance.orbit)
-        nearest = min(circle, key=lambda point: math.dist(point, pos_ned))
-        return [(pos_ned, nearest), *pairwise(circle)]
-    if memory.state is State.FLYING_MISSION and vehicle.missions.path_ned:
-        path_ned = vehicle.missions.path_ned
-        return [(pos_ned, pos_ned), *pairwise((path_ned[0], *path_ned))]
+        return _round(vehicle.orbits.flown.guidance.orbit, pos_ned)
+    if memory.state is State.FLYING_MISSION and vehicle.missions.legs_ned:
+        return [(pos_ned, pos_ned), *vehicle.missions.legs_ned]
     if memory.state is State.RETURNING and memory.return_up_m is not None:
         return [leg for way in _home(memory, pos_ned, memory.return_up_m) for leg in pairwise(way)]
     return [(pos_ned, _end_of(memory, pos_ned))]
+
+
+def legs_asked(vehicle: Vehicle, request_id: int, request: Request, pos_ned: Vec3) -> list[Leg]:
+    """What it would fly by a request for a goal, a climb, an orbit or a mission; none where the
+    gate refuses that in any case."""
+    memory = vehicle.gate.memory
+    match request:
+        case GoTo(goal_ned) if memory.state not in NOT_FLYING:
+            return [(pos_ned, goal_ned)]
+        case TakeOff(up_m) if memory.state is State.GROUNDED:
+            north_m, east_m, down_m = pos_ned
+            return [(pos_ned, (north_m, east_m, down_m - up_m))]
+        case BeginStream() if request_id in vehicle.orbits.asked:
+            _, orbit = vehicle.orbits.asked[request_id]
+            return _round(orbit, pos_ned)
+        case StartMission() if memory.state in (State.GROUNDED, State.HOVERING):
+            return [*vehicle.missions.legs_ned]
+    return []
 
 
 def _end_of(memory: Memory, pos_ned: Vec3) -> Vec3:
@@ -49,10 +66,13 @@ def _end_of(memory: Memory, pos_ned: Vec3) -> Vec3:
     return pos_ned if memory.hold is None else memory.hold.pos_ned
 
 
-def _round(orbit: Orbit) -> list[Vec3]:
-    """Closed, with chords that are off by CHORD_OFF_M at most."""
+def _round(orbit: Orbit, pos_ned: Vec3) -> list[Leg]:
+    """To the nearest point of the circle, and once round it, with chords that are off by
+    CHORD_OFF_M at most."""
     count = math.ceil(math.pi / math.acos(1.0 - CHORD_OFF_M / orbit.radius_m))
-    return [orbit.point_ned(2.0 * math.pi * n / count) for n in range(count + 1)]
+    circle = [orbit.point_ned(2.0 * math.pi * n / count) for n in range(count + 1)]
+    nearest = min(circle, key=lambda point: math.dist(point, pos_ned))
+    return [(pos_ned, nearest), *pairwise(circle)]
 
 
 def _home(memory: Memory, pos_ned: Vec3, return_up_m: float) -> list[tuple[Vec3, ...]]:

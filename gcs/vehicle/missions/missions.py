@@ -35,6 +35,7 @@ from gcs.vehicle.missions.jobs.job import (
     JobWork,
     OnBoardChanged,
     OnBoardRefused,
+    PathVerified,
     VehicleView,
     refused,
 )
@@ -104,6 +105,8 @@ class Missions:
         """The one that is under way."""
         self._on_board: OnBoard | None = None
         self._path_ned: tuple[Vec3, ...] = ()
+        self.legs_ned: tuple[tuple[Vec3, Vec3], ...] = ()
+        """What the mission flies that is started, or was asked for last, from where it began."""
         self._begin_seq: int | None = None
         """The item at which the next start in the air begins, where one was asked for."""
         self._left = False
@@ -165,6 +168,7 @@ class Missions:
         asked = Asked(request_id, ask.id, ask.word, self._own, self._timing, self._times)
         job = self._job_for(ask, asked, plan, kind, view.state, view.policy)
         if job is None:
+            self.legs_ned = ()
             return [AskGate(request_id, StartMission())]
         if isinstance(job, StartingJob) and autopilot_name(view.telemetry) == "px4":
             job.not_before_ns = self._taken_ns + self._times.real_ns(PX4_CHECKS_NS)
@@ -371,6 +375,8 @@ class Missions:
                     self.total = len(item.on_board.sent)
             elif isinstance(item, OnBoardRefused):
                 self._told.refused(item.items, item.why)
+            elif isinstance(item, PathVerified):
+                self.legs_ned = item.legs_ned
             elif isinstance(item, BeginsAt):
                 self._begin_seq = item.seq
             else:

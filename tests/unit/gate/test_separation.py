@@ -14,6 +14,7 @@ from gcs.gate.airspace.separation import (
     between_legs_m,
     closest_approach,
     is_too_close,
+    legs_near,
 )
 from gcs.gate.policy.policy import SeparationLimits
 
@@ -163,6 +164,27 @@ def test_legs_are_as_near_as_any_two_of_their_points(a: V, b: V, c: V, d: V) -> 
     coarse_m = (math.dist(a, b) + math.dist(c, d)) / 40
     assert tried_m - coarse_m - 1e-6 <= found_m <= tried_m + 1e-6
     assert found_m == pytest.approx(between_legs_m(d, c, b, a), abs=1e-6)
+
+
+ways = st.lists(st.tuples(places, places), min_size=1, max_size=5)
+
+
+@given(ways, ways, st.floats(0.0, 40.0))
+def test_legs_that_are_not_compared_are_farther_apart(
+    mine: list[tuple[V, V]], others: list[tuple[V, V]], within_m: float
+) -> None:
+    near, others_near = legs_near(mine, others, within_m)
+    for one in mine:
+        for other in others:
+            if one not in near or other not in others_near:
+                assert between_legs_m(*one, *other) > within_m
+
+
+def test_of_long_ways_that_meet_at_a_corner_few_legs_are_compared() -> None:
+    mine = [((0.0, east, 0.0), (100.0, east, 0.0)) for east in map(float, range(100))]
+    others = [((103.0, east, 0.0), (200.0, east, 0.0)) for east in map(float, range(98, 198))]
+    near, others_near = legs_near(mine, others, 5.0)
+    assert (len(near), len(others_near)) == (7, 7)
 
 
 def test_legs_that_cross_meet_and_one_that_is_not_finite_is_taken_to_meet() -> None:

@@ -98,6 +98,13 @@ class BeginsAt:
 
 
 @dataclass(frozen=True, slots=True)
+class PathVerified:
+    """What the next start of the mission flies, from where the vehicle is."""
+
+    legs_ned: tuple[tuple[Vec3, Vec3], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Asked:
     """Whose request a job is, and between whom its transfers run."""
 
@@ -109,7 +116,7 @@ class Asked:
     times: Times
 
 
-JobWork: TypeAlias = Work | OnBoardChanged | OnBoardRefused | BeginsAt
+JobWork: TypeAlias = Work | OnBoardChanged | OnBoardRefused | BeginsAt | PathVerified
 
 
 class Job(ABC):

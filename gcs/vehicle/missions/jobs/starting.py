@@ -28,7 +28,7 @@ from gcs.protocol.effects import Address
 from gcs.protocol.mission_rewind import MissionRewind
 from gcs.session.inputs import FileRead, FileWritten
 from gcs.session.work import AskGate, GateInput
-from gcs.vehicle.missions.jobs.job import Asked, JobWork, VehicleView, code_of
+from gcs.vehicle.missions.jobs.job import Asked, JobWork, PathVerified, VehicleView, code_of
 from gcs.vehicle.missions.jobs.verified import VerifiedJob
 from gcs.vehicle.missions.paths import first_item
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -85,6 +85,8 @@ class StartingJob(VerifiedJob):
         self._verified_from: _Place | None = None
         self._corners_ned: list[Vec3] = []
         """Of the path from there; of both, where it may begin at either of two items."""
+        self._legs_ned: list[tuple[Vec3, Vec3]] = []
+        """The same path, as it is flown."""
         self._rounds = 0
 
     @abstractmethod
@@ -139,7 +141,7 @@ class StartingJob(VerifiedJob):
         at, counts as verified from where the vehicle was at first."""
         if self._verified_from is None:
             self._verified_from = _place(view.telemetry)
-            self._corners_ned = []
+            self._corners_ned, self._legs_ned = [], []
         return super().verify(plan, view, now_ns, begin_item)
 
     def _ask_from_here(self, view: VehicleView, now_ns: int) -> list[JobWork]:
@@ -163,11 +165,12 @@ class StartingJob(VerifiedJob):
     def note_path(self, path: FlightPath) -> None:
         """It has cleared."""
         self._corners_ned += path.corners
+        self._legs_ned += path.flown
 
     def ask_gate(self) -> list[JobWork]:
         """All that is known of the mission is: the start is the gate's to decide."""
         self.over = True
-        work: list[JobWork] = []
+        work: list[JobWork] = [PathVerified(tuple(self._legs_ned))]
         if self._corners_ned:
             work.append(GateInput(MissionPathVerified(box_round(self._corners_ned))))
         return [*work, AskGate(self.asked.request_id, StartMission(self._begin_seq))]
