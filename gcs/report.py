@@ -145,6 +145,15 @@ class StopItem(msgspec.Struct, frozen=True):
     allowed_m_s: float | None = None
 
 
+class LegItem(msgspec.Struct, frozen=True):
+    """The leg that is flown, from where the vehicle was to its goal, and so fast the law of pace
+    lets it fly at each of the places; without places: no leg is flown any more."""
+
+    sysid: int
+    places_ned: tuple[Vec3, ...]
+    speeds_m_s: tuple[float, ...]
+
+
 class ParamItem(msgspec.Struct, frozen=True):
     """A parameter of the vehicle, when it becomes known and when it changes."""
 
@@ -304,6 +313,7 @@ RecordItem: TypeAlias = (
     | StatusItem
     | SetpointItem
     | StopItem
+    | LegItem
     | ParamItem
     | FsaItem
     | DecisionItem

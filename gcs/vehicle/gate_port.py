@@ -32,6 +32,7 @@ from gcs.session.work import (
     Work,
     condition,
 )
+from gcs.vehicle.leg_ahead import LegAhead
 from gcs.vehicle.talk.telemetry import Telemetry
 
 NOT_FLYING: Final = frozenset({State.NO_VEHICLE, State.STALE, State.GROUNDED})
@@ -59,6 +60,7 @@ class GatePort:
         self._verifier: Verifier | None = None
         self._start_checked = False
         self._fence_on = True
+        self._leg_ahead = LegAhead()
 
     def meet(self, telemetry: Telemetry, now_ns: int) -> list[Work]:
         """A vehicle was heard: a new gate, for its autopilot; what was wrong before still is, but
@@ -143,8 +145,14 @@ class GatePort:
                 self._fence_on = on
                 return [PlaceFence()]
 
-    def predicted_stop(self, telemetry: Telemetry) -> list[Work]:
-        """Where the gate predicts that the vehicle comes to rest; in flight only."""
+    def ahead(self, telemetry: Telemetry) -> list[Work]:
+        """What a viewer is to draw ahead of the vehicle: the leg, and where it would come to
+        rest."""
+        leg = self._leg_ahead.look(self.gate.memory, telemetry.sysid)
+        return [*([] if leg is None else [Record(leg)]), *self._predicted_stop(telemetry)]
+
+    def _predicted_stop(self, telemetry: Telemetry) -> list[Work]:
+        """In flight only."""
         if telemetry.pos_ned is None or self.gate.state in NOT_FLYING:
             return []
         memory, name = self.gate.memory, telemetry.autopilot.name

@@ -195,9 +195,10 @@ class Vehicle(VehicleParts):
         sysid = self.sysid or self.config.expected_sysid
         return [*announcements.reminder(self.port.gate, sysid)] if sysid else []
 
-    def predicted_stop(self) -> list[Work]:
-        """Where it would come to rest if it were told to stop now, for the record.  In flight."""
-        return [] if self.telemetry is None else self.port.predicted_stop(self.telemetry)
+    def ahead(self) -> list[Work]:
+        """For the record: what the room allows on the leg that it flies, and where it would come to
+        rest if it were told to stop now."""
+        return [] if self.telemetry is None else self.port.ahead(self.telemetry)
 
     # ----------------------------------------------------------------------------- requests
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from gcs.policy_file import load_policy
 from gcs.record.viewer.layout import PURPOSES, Purpose, layout_for
 from gcs.record.viewer.live_layout import live_layout
 from gcs.record.writer import Recorder
-from gcs.report import AttachmentItem, FsaItem, MetadataItem
+from gcs.report import AttachmentItem, FsaItem, LegItem, MetadataItem, StopItem
 from gcs.request_words import SendRequests
 from gcs.resources import find
 from gcs.session.inputs import OperatorLine
@@ -143,6 +144,37 @@ def test_a_refusal_and_a_hold_are_long_enough_to_be_seen(path: Path) -> None:
         later = [other_ns for other_ns, _ in decisions if other_ns > at_ns]
         quiet += min(later) - at_ns > 1.4e9
     assert quiet >= 2
+
+
+def test_the_speed_drawn_along_a_leg_is_the_one_that_the_gate_allows_there(
+    demo: tuple[Flight, object],
+) -> None:
+    """Each leg of the script is drawn, and is gone at its end.  At its beginning the gate allows
+    less, as the vehicle is slow yet."""
+    flight, _ = demo
+    legs = [item for _, item in flight.records if isinstance(item, LegItem)]
+    assert len(legs) == 2 * 5
+    assert all(bool(leg.places_ned) is (number % 2 == 0) for number, leg in enumerate(legs))
+    drawn = legs[1]
+    apart_m_s = []
+    for _, item in flight.records:
+        if isinstance(item, LegItem):
+            drawn = item
+        elif isinstance(item, StopItem) and item.allowed_m_s is not None and drawn.places_ned:
+            apart_m_s.append(_speed_there(drawn, item) - item.allowed_m_s)
+    assert min(apart_m_s) > -0.15
+    assert sorted(apart_m_s)[len(apart_m_s) * 3 // 4] < 0.1
+
+
+def _speed_there(leg: LegItem, at: StopItem) -> float:
+    """Between the two places beside the one where the vehicle is."""
+    goal_ned = leg.places_ned[-1]
+    left_m = [math.dist(place_ned, goal_ned) for place_ned in leg.places_ned]
+    here_m = min(left_m[0], math.dist(at.pos_ned, goal_ned))
+    after = next(number for number, metres in enumerate(left_m) if number and metres <= here_m)
+    share = (here_m - left_m[after]) / (left_m[after - 1] - left_m[after])
+    before_m_s, after_m_s = leg.speeds_m_s[after - 1], leg.speeds_m_s[after]
+    return after_m_s + share * (before_m_s - after_m_s)
 
 
 def test_the_last_table_has_the_whole_story(path: Path) -> None:

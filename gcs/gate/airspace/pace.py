@@ -34,12 +34,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
+from msgspec import structs
+
 from gcs.enu_text import fixed
 from gcs.frames import Vec3
 from gcs.gate.airspace.bounds import STANDING, Bounds
 from gcs.gate.airspace.fence_check import Slack
 from gcs.gate.airspace.stopping import travel_m
-from gcs.gate.policy.policy import Pace, Policy
+from gcs.gate.policy.policy import Pace, Paces, Policy
 from gcs.gate.refusal import Code, Refusal
 
 FIRM: Final = 4.0
@@ -91,14 +93,15 @@ def paced(
     late_s: float = 0.0,
     beside_ned: Vec3 = STANDING,
     most_m_s: float = math.inf,
+    rules: Paces | None = None,
 ) -> Paced:
     """What to send now to a vehicle that is to fly to `goal_ned`, which was verified.
 
     `late_s`: how old the position is, and so how late a stop would be.  `beside_ned`: the velocity
     that is sent beside the position, which the autopilot adds.  `most_m_s`: along the way, what
-    was asked for.
+    was asked for.  `rules`: other ones than the policy's.
     """
-    rules = bounds.policy.pace_of(bounds.autopilot)
+    rules = rules or bounds.policy.pace_of(bounds.autopilot)
     north, east, down = (goal - pos for goal, pos in zip(goal_ned, pos_ned, strict=True))
     away_m = math.hypot(north, east)
     n, e = (north / away_m, east / away_m) if away_m > 0.0 else (0.0, 0.0)
@@ -169,6 +172,18 @@ def paced(
     if min(ahead_m, up_or_down_m) < 0.0 and not is_free(pos_ned, target_ned):
         target_ned = so_far_ahead(max(0.0, ahead_m), max(0.0, up_or_down_m))
     return Paced(goal_ned, target_ned, (n * level_m_s, e * level_m_s, sign * vertical_m_s))
+
+
+def speed_there(bounds: Bounds, goal_ned: Vec3, pos_ned: Vec3, most_m_s: float) -> float:
+    """The speed of this law at a place on the way to `goal_ned`, of a vehicle that has had the time
+    to become so fast; it may not have: see `gain`."""
+    own = bounds.policy.pace_of(bounds.autopilot)
+    level, vertical = (
+        structs.replace(axis, gain_m_s=math.inf) for axis in (own.level, own.vertical)
+    )
+    rules = Paces(level=level, vertical=vertical)
+    sent = paced(bounds, goal_ned, pos_ned, STANDING, most_m_s=most_m_s, rules=rules)
+    return math.hypot(*sent.v_ned)
 
 
 @dataclass(frozen=True, slots=True)

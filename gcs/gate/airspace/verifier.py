@@ -54,6 +54,7 @@ class Verifier(Bounds):
     predicted_stop = braking.predicted_stop
     hold_ahead = braking.hold_ahead
     paced = pace.paced
+    speed_there = pace.speed_there
 
     return_paths = returns.return_paths
     return_path = returns.return_path

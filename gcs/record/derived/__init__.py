@@ -13,6 +13,7 @@ and, where foxglove-sdk is there, in Foxglove's own schemas:
     body_frames     /tf_static, /vehicle/N/tf, model, odometry
     path            /vehicle/N/path                    places     /vehicle/N/location, /origin
     gate_scene      /gate/goals, /vehicle/N/setpoint, target, stop
+    leg_scene       /vehicle/N/leg
     plan_scene      /geofence, /geofence/geojson, /mission
     words           /log, /events
 """
@@ -65,10 +66,12 @@ def _foxglove_parts() -> list[Deriver]:
     """Imported late: the SDK is an extra."""
     from gcs.record.derived.body_frames import BodyFrames, FrameNames
     from gcs.record.derived.gate_scene import GateScene
+    from gcs.record.derived.leg_scene import LegScene
     from gcs.record.derived.path import Paths
     from gcs.record.derived.places import Places
     from gcs.record.derived.plan_scene import PlanScene
     from gcs.record.derived.words import Words
 
     names = FrameNames()
-    return [BodyFrames(names), Paths(names), Places(names), GateScene(names), PlanScene(), Words()]
+    vehicles = [BodyFrames(names), Paths(names), Places(names), GateScene(names), LegScene(names)]
+    return [*vehicles, PlanScene(), Words()]

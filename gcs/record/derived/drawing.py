@@ -41,13 +41,14 @@ def color(rgb: Rgb, alpha: float = 1.0) -> Color:
 
 def line(
     points: Sequence[Vec3],
-    of: Color,
+    of: Color | list[Color],
     *,
     closed: bool = False,
     pairs: bool = False,
     pixels: float = 2.0,
 ) -> LinePrimitive:
-    """Through the points; `closed` back to the first; `pairs`: every two points are a line."""
+    """Through the points; `closed` back to the first; `pairs`: every two points are a line.
+    `of`: one colour, or one for each point."""
     kind = LinePrimitiveLineType.LineLoop if closed else LinePrimitiveLineType.LineStrip
     return LinePrimitive(
         type=LinePrimitiveLineType.LineList if pairs else kind,
@@ -55,7 +56,8 @@ def line(
         thickness=pixels,
         scale_invariant=True,
         points=[Point3(x=x, y=y, z=z) for x, y, z in points],
-        color=of,
+        color=None if isinstance(of, list) else of,
+        colors=of if isinstance(of, list) else [],
     )
 
 

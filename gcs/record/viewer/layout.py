@@ -31,7 +31,7 @@ PURPOSES: tuple[Purpose, ...] = ("one", "fleet", "lab")
 """Of records; `live` is filled in by `live_layout.py`."""
 
 _LEAVES = (
-    *("tf", "model", "path", "setpoint", "target", "stop", "odometry"),
+    *("tf", "model", "path", "setpoint", "target", "stop", "leg", "odometry"),
     *("location", "state", "fsa", "phase"),
 )
 _COMMON = (

@@ -101,6 +101,7 @@ def _topics(bodies: Sequence[Body], line_width_m: float) -> dict[str, dict[str, 
         shown[f"{base}/path"] = {"type": "line", "lineWidth": line_width_m, "gradient": gradient}
         shown[f"{base}/target"] = {}
         shown[f"{base}/stop"] = {}
+        shown[f"{base}/leg"] = {}
         shown[f"{base}/setpoint"] = {"visible": False}
         shown[f"{base}/odometry"] = {"visible": False}
     return shown

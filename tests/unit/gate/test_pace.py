@@ -144,6 +144,26 @@ def test_to_a_goal_without_room_past_it_it_is_flown_slower() -> None:
         assert sent.v_ned == pytest.approx(at(asked_m_s, 0, 0))
 
 
+@pytest.mark.parametrize(
+    ("pos_m", "goal_m", "asked_m_s", "there_m_s"),
+    [
+        # without a time to become so fast: see `test_level` for the figures of the ends
+        (0, 100, math.inf, 12.0),
+        (90, 100, math.inf, 7.89123),
+        (98.5, 100, math.inf, 1.425),
+        # what was asked for; in no room past the goal; where the stop fits, 25 m before the fence
+        (0, 100, 3.0, 3.0),
+        (0, 143.1, math.inf, 10.0),
+        (125, 147.9, math.inf, 4.96),
+    ],
+)
+def test_the_speed_at_a_place_on_the_way_is_that_of_one_that_is_as_fast_as_it_may_be(
+    pos_m: float, goal_m: float, asked_m_s: float, there_m_s: float
+) -> None:
+    speed_m_s = field("px4").speed_there(at(goal_m, 0, 20), at(pos_m, 0, 20), asked_m_s)
+    assert speed_m_s == pytest.approx(there_m_s, abs=0.1)
+
+
 def test_one_that_does_not_slow_down_is_asked_to_fly_back() -> None:
     """2.5 m before the fence; no faster than it flies on, and at 2.5 m/s at the most."""
     for speed_m_s, back_m_s in ((1.3, 1.3), (0.4, 0.4), (6.0, 2.5)):

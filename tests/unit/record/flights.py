@@ -27,6 +27,7 @@ from gcs.report import (
     GarbageItem,
     GeodeticItem,
     InputItem,
+    LegItem,
     LogEvent,
     MetadataItem,
     MissionItem,
@@ -171,6 +172,7 @@ def a_flight() -> list[RecordItem]:
         FsaItem(1, "HOVERING", 1, "GROUNDED", "airborne", "ours", "nominal", None),
         SetpointItem(1, (1.0, 2.0, -3.0), None),
         StopItem(1, (1.0, 2.0, -3.0), (1.0, 5.0, -3.0)),
+        LegItem(1, ((1.0, 2.0, -3.0), (1.0, 5.0, -3.0)), (2.0, 0.0)),
         decided(
             7,
             "refused",

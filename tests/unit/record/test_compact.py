@@ -78,7 +78,7 @@ def test_a_file_that_is_not_closed_stays_as_it_is(flight: Path) -> None:
 
 def test_a_file_with_a_damaged_chunk_stays_as_it_is(flight: Path) -> None:
     data = bytearray(flight.read_bytes())
-    data[len(data) // 3] ^= 0xFF
+    data[len(data) // 4] ^= 0xFF  # inside the first chunk
     flight.write_bytes(data)
     unchanged(flight, NotCompactedError, "not whole")
 

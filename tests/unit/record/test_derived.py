@@ -67,6 +67,7 @@ def test_a_whole_flight_has_every_topic_and_each_decodes(tmp_path: Path) -> None
         "/vehicle/1/setpoint": "foxglove.PoseInFrame",
         "/vehicle/1/target": "foxglove.SceneUpdate",
         "/vehicle/1/stop": "foxglove.SceneUpdate",
+        "/vehicle/1/leg": "foxglove.SceneUpdate",
         "/vehicle/1/odometry": "foxglove.Odometry",
         "/vehicle/1/phase": "vehicle.Phase",
         "/vehicle/1/location": "foxglove.LocationFix",

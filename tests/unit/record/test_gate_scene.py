@@ -12,6 +12,7 @@ import pytest
 from gcs.report import (
     FenceItem,
     FenceShape,
+    LegItem,
     LogEvent,
     PointEnu,
     PoseItem,
@@ -117,6 +118,30 @@ def test_the_stop_says_how_fast_it_is_and_how_fast_it_may_be(tmp_path: Path) -> 
     path = record(tmp_path, [moving, *stops], step_ns=SECOND)
     texts = [entity.texts[0].text for entity in drawn(path, "/vehicle/1/stop")]
     assert texts == ["3.0 of 3.5 m/s, stop 4.0 m", "3.0 m/s, stop 4.0 m"]
+
+
+def test_the_leg_is_coloured_by_the_speed_that_is_allowed_and_by_the_one_flown(
+    tmp_path: Path,
+) -> None:
+    places = ((0.0, 0.0, -2.0), (4.0, 0.0, -2.0), (8.0, 0.0, -2.0), (10.0, 0.0, -2.0))
+    leg = LegItem(1, places, (6.0, 6.0, 3.0, 0.0))
+    flown = [PoseItem(1, (n / 20, 0.0, -2.0), (3.0, 0.0, 0.0), UPRIGHT) for n in range(120)]
+    path = record(tmp_path, [leg, *flown, LegItem(1, (), ())], step_ns=20 * MS)
+    scenes = pictures(path, "/vehicle/1/leg")
+    assert [len(scene.entities) for scene in scenes] == [1, 1, 1, 0]  # 2.4 s, once a second
+    assert scenes[-1].deletions
+    begun, late = scenes[0].entities[0], scenes[-2].entities[0]
+    (ahead,) = begun.lines
+    assert [(p.y, p.z) for p in ahead.points] == [(0.0, 2.0), (4.0, 2.0), (8.0, 2.0), (10.0, 2.0)]
+    fast, still_fast, half, slow = ((c.r, c.g, c.b) for c in ahead.colors)
+    assert fast == still_fast
+    assert half == pytest.approx([(a + b) / 2 for a, b in zip(fast, slow, strict=True)])
+    (words,) = begun.texts
+    assert (words.text, words.pose.position.y) == ("slows from 6.0 m/s", 4.0)
+    behind = late.lines[1]
+    assert (behind.points[0].y, len(behind.points) <= 60) == (0.0, True)
+    assert behind.points[-1].y == pytest.approx(5.0, abs=0.4)
+    assert {(c.r, c.g, c.b) for c in behind.colors} == {half}
 
 
 def test_a_long_reason_is_told_in_three_short_lines(tmp_path: Path) -> None:

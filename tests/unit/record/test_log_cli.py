@@ -122,7 +122,7 @@ def test_info_json_is_for_programs(flight: Path) -> None:
     found = json.loads(gcs_log("info", flight, "--json").output)
     assert found["closed"] is True
     assert found["messages"] == len(messages_of(flight))
-    assert found["seconds"] == pytest.approx(1.5)
+    assert found["seconds"] == pytest.approx(1.6)
     assert {topic["topic"] for topic in found["topics"]} == {m.topic for m in messages_of(flight)}
     assert [state["state"] for state in found["states"]] == ["HOVERING", "MOVING"]
     (decision,) = found["decisions"]
