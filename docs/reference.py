@@ -179,7 +179,7 @@ _ITEMS: tuple[RecordItem, ...] = (
     DecisionItem(1, 1, "", "goto", "verdict", "accepted", "", "", "", PointEnu(1, 2, 3), {}),
     DecisionItem(1, 1, "", "goto", "ending", "complete", "", "", "", None, {}),
     FenceItem([FenceShape("yard", True, [(0, 0), (1, 0), (1, 1)])], (47.0, 8.0, 488.0), 1.0, 1.0),
-    MissionItem("mission", (_ORIGIN,)),
+    MissionItem(1, "mission", (_ORIGIN,)),
     LogEvent(0, 2, "gate", "a line"),
     InputItem.of("tick", 1),
 )

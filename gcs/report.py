@@ -257,8 +257,9 @@ class FenceItem(msgspec.Struct, frozen=True):
 
 
 class MissionItem(msgspec.Struct, frozen=True):
-    """The path of the mission on board, local NED."""
+    """The path of the mission on board of vehicle `sysid`, local NED; none: without a path."""
 
+    sysid: int
     name: str
     path_ned: tuple[Vec3, ...]
 

@@ -443,12 +443,12 @@ class Session:
             case SecondDue():
                 return self._every_second(now_ns)
             case SnapshotDue():
-                ahead = self._vehicles.each(lambda each: each.ahead())
+                drawn = self._vehicles.each(lambda each: each.drawn())
                 left_out = self._setup.config.bridge and self._operators.first_is_alone
                 self._snapshots += 1
                 if left_out and self._snapshots % SNAPSHOTS_A_LOOK != 1:
-                    return ahead
-                return [*self._shown(now_ns), *ahead]
+                    return drawn
+                return [*self._shown(now_ns), *drawn]
             case (
                 Joined()
                 | Lost()

@@ -22,7 +22,7 @@ from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.states import Control, State
 from gcs.protocol.effects import Address, Send
-from gcs.report import SetpointItem
+from gcs.report import MissionItem, SetpointItem
 from gcs.session import announcements
 from gcs.session.effects import Record
 from gcs.session.inputs import FileRead, FileWritten
@@ -75,6 +75,8 @@ class Vehicle(VehicleParts):
         super().__init__(config, policy, times, now_ns, first=first)
         self.frames = VehicleFrames(self)
         """The way in of what it sends."""
+        self._path_ned: tuple[Vec3, ...] = ()
+        """Of the mission on board, as it was recorded last."""
 
     # ------------------------------------------------------------------------------ reading
 
@@ -195,10 +197,18 @@ class Vehicle(VehicleParts):
         sysid = self.sysid or self.config.expected_sysid
         return [*announcements.reminder(self.port.gate, sysid)] if sysid else []
 
-    def ahead(self) -> list[Work]:
-        """For the record: what the room allows on the leg that it flies, and where it would come to
-        rest if it were told to stop now."""
-        return [] if self.telemetry is None else self.port.ahead(self.telemetry)
+    def drawn(self) -> list[Work]:
+        """For the record: what the room allows on the leg that it flies, where it would come to
+        rest if it were told to stop now, and the mission on board where that is another one."""
+        if self.telemetry is None:
+            return []
+        work = self.port.ahead(self.telemetry)
+        path_ned, plan = self.missions.path_ned, self.missions.plan
+        if path_ned is not self._path_ned:
+            self._path_ned = path_ned
+            name = "" if plan is None else plan.plan.name
+            work.append(Record(MissionItem(self.telemetry.sysid, name, path_ned)))
+        return work
 
     # ----------------------------------------------------------------------------- requests
 

@@ -16,6 +16,7 @@ from gcs import ipc
 from gcs.gate.effects import Level
 from gcs.gate.policy.parse import parse_policy
 from gcs.gate.states import State
+from gcs.report import MissionItem
 from tests.loopback.flight import HOMES, MISSIONS, PERSONALITIES, POLICIES, Flight, Personality
 from tests.loopback.lossy_link import Weather
 from tests.sample_files import SAMPLES, elsewhere
@@ -264,10 +265,14 @@ def test_without_arming_or_without_a_mission_none_is_started() -> None:
     assert flight.done(flight.say("mission_upload", path=too_large)).startswith("refused")
 
 
-def test_a_cleared_mission_is_not_started() -> None:
+def test_a_cleared_mission_is_not_drawn_and_not_started() -> None:
     flight = Flight().connected()
     flight.do("mission_upload", path=str(MISSIONS / "square.toml"))
+    flight.run(0.2)
     flight.do("mission_clear")
+    flight.run(0.2)
+    shown = [item for _, item in flight.records if isinstance(item, MissionItem)]
+    assert [bool(item.path_ned) for item in shown] == [True, False]
     assert flight.vehicle.plan == ()
     flight.do("arm")
     assert flight.done(flight.say("mission_start")) == "refused NO_MISSION"

@@ -74,4 +74,4 @@ def _foxglove_parts() -> list[Deriver]:
 
     names = FrameNames()
     vehicles = [BodyFrames(names), Paths(names), Places(names), GateScene(names), LegScene(names)]
-    return [*vehicles, PlanScene(), Words()]
+    return [*vehicles, PlanScene(names), Words()]

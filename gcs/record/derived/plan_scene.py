@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import cos, degrees, radians
 from typing import ClassVar
 
 from foxglove.messages import GeoJson, SceneEntity, SceneUpdate, Timestamp, TriangleListPrimitive
 
 from gcs.frames import enu_from_ned
+from gcs.record.derived.body_frames import FrameNames
 from gcs.record.derived.drawing import (
     EARTH_RADIUS_M,
     ball,
@@ -37,11 +38,14 @@ _PALER = 0.55
 
 
 class PlanScene(Deriver):
-    """Each anew whenever it changes."""
+    """Each anew whenever it changes; the missions of all vehicles in one message, as a viewer that
+    seeks shows the last one."""
 
     takes: ClassVar = frozenset({FenceItem, MissionItem})
 
-    def __init__(self) -> None:
+    def __init__(self, names: FrameNames) -> None:
+        self._names = names
+        self._missions: dict[int, MissionItem] = {}
         self._mission = channel("/mission", SceneUpdate.get_schema())
         self._fence = channel("/geofence", SceneUpdate.get_schema())
         self._fence_map = channel("/geofence/geojson", GeoJson.get_schema())
@@ -54,7 +58,10 @@ class PlanScene(Deriver):
                 outs = [Out(self._fence, walls.encode(), latch="fence")]
                 return outs + [Out(self._fence_map, m.encode(), "fence") for m in [on_map] if m]
             case MissionItem():
-                return [Out(self._mission, mission(item, stamp(now_ns)).encode(), "mission")]
+                self._missions[item.sysid] = item
+                frames = {sysid: self._names.of(sysid).enu for sysid in self._missions}
+                drawn = missions(self._missions, frames, stamp(now_ns))
+                return [Out(self._mission, drawn.encode(), "mission")]
             case _:
                 return []
 
@@ -71,21 +78,33 @@ def fence(item: FenceItem, at: Timestamp) -> SceneUpdate:
     return SceneUpdate(deletions=clear(at), entities=entities)
 
 
-def mission(item: MissionItem, at: Timestamp) -> SceneUpdate:
-    """The path as a line, every point as a numbered ball."""
+def missions(
+    of_vehicles: Mapping[int, MissionItem], frames: Mapping[int, str], at: Timestamp
+) -> SceneUpdate:
+    """Each path as a line, every point as a numbered ball; of several vehicles with theirs before
+    it, `2: 1`."""
+    paths = {sysid: item for sysid, item in of_vehicles.items() if item.path_ned}
+    entities = [
+        _mission(item, frames[sysid], f"{sysid}: " if len(paths) > 1 else "", at)
+        for sysid, item in paths.items()
+    ]
+    return SceneUpdate(deletions=clear(at), entities=entities)
+
+
+def _mission(item: MissionItem, frame_id: str, prefix: str, at: Timestamp) -> SceneEntity:
     points = [enu_from_ned(pos_ned) for pos_ned in item.path_ned]
     route = color(_ROUTE)
-    drawn = entity(
-        "mission",
+    return entity(
+        f"mission {item.sysid}",
         at,
-        lines=[line(points, route)] if points else [],
+        frame_id=frame_id,
+        lines=[line(points, route)],
         spheres=[ball(point, 0.4, route) for point in points],
         texts=[
-            label((east, north, up + 0.8), str(number))
+            label((east, north, up + 0.8), f"{prefix}{number}")
             for number, (east, north, up) in enumerate(points, start=1)
         ],
     )
-    return SceneUpdate(deletions=clear(at), entities=[drawn] if points else [])
 
 
 def fence_geojson(item: FenceItem) -> GeoJson | None:

@@ -164,7 +164,7 @@ def a_flight() -> list[RecordItem]:
         AttachmentItem("policy.toml", "text/toml", b"[fence]"),
         InputItem.of("start", {"seed": 1}),
         FenceItem([home, tower], (47.397742, 8.545594, 488.0)),
-        MissionItem("square", ((0.0, 0.0, -5.0), (10.0, 0.0, -5.0))),
+        MissionItem(1, "square", ((0.0, 0.0, -5.0), (10.0, 0.0, -5.0))),
         position_frame(0),
         PoseItem(1, (1.0, 2.0, -3.0), (3.0, 4.0, -0.5), upright),
         GeodeticItem(1, 47.397742, 8.545594, 491.0, 3.0),

@@ -329,17 +329,25 @@ def test_without_an_origin_there_is_no_fence_on_the_map(tmp_path: Path) -> None:
 
 
 def test_a_mission_is_a_line_of_numbered_points(tmp_path: Path) -> None:
-    path = record(tmp_path, [MissionItem("m", ((0.0, 0.0, -5.0), (10.0, 0.0, -5.0)))])
+    path = record(tmp_path, [MissionItem(1, "m", ((0.0, 0.0, -5.0), (10.0, 0.0, -5.0)))])
     (scene,) = pictures(path, "/mission")
     points = scene.entities[0].lines[0].points
     assert [(point.x, point.y, point.z) for point in points] == [(0, 0, 5), (0, 10, 5)]
     assert [text.text for text in scene.entities[0].texts] == ["1", "2"]
 
 
-def test_a_cleared_mission_disappears(tmp_path: Path) -> None:
-    (scene,) = pictures(record(tmp_path, [MissionItem("", ())]), "/mission")
-    assert not scene.entities
-    assert scene.deletions
+def test_each_vehicle_has_its_mission_until_it_is_cleared(tmp_path: Path) -> None:
+    """In its own frame: homes are apart."""
+    way = ((0.0, 0.0, -5.0), (10.0, 0.0, -5.0))
+    known = [pose((0.0, 0.0, 0.0)), pose((0.0, 0.0, 0.0), sysid=2)]
+    told = [MissionItem(1, "a", way), MissionItem(2, "b", way), MissionItem(1, "", ())]
+    scenes = pictures(record(tmp_path, [*known, *told]), "/mission")
+    assert [[(e.id, e.frame_id, e.texts[0].text) for e in scene.entities] for scene in scenes] == [
+        [("mission 1", "map", "1")],
+        [("mission 1", "map", "1: 1"), ("mission 2", "map_2", "2: 1")],
+        [("mission 2", "map_2", "1")],
+    ]
+    assert all(scene.deletions for scene in scenes)
 
 
 def test_the_fields_of_json_topics_are_a_file_format(tmp_path: Path) -> None:

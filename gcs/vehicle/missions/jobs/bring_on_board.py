@@ -22,8 +22,6 @@ from gcs.plan.legs import FlightPath
 from gcs.plan.model import Fence
 from gcs.plan.parts import are, held
 from gcs.plan.verify import Verification
-from gcs.report import MissionItem
-from gcs.session.effects import Record
 from gcs.session.work import GateInput, Log
 from gcs.vehicle.missions.jobs.facts import landings_on_board
 from gcs.vehicle.missions.jobs.job import (
@@ -109,7 +107,6 @@ class BringMission(PreparedJob, BringingJob):
             points = tuple(dict.fromkeys(end for leg in self._flown.segments for end in leg))
             work += [
                 OnBoardChanged(on_board(plan, prepared.sent), points),
-                Record(MissionItem(plan.name, points)),
                 GateInput(MissionLoaded(plan.name, len(plan.items))),
             ]
         sent = plan if prepared.fence else replace(plan, fence=Fence())

@@ -14,8 +14,6 @@ from gcs.plan.errors import PlanError
 from gcs.plan.verify import Verification
 from gcs.plan.wire import WireItem
 from gcs.protocol.mission import MissionDownload
-from gcs.report import MissionItem
-from gcs.session.effects import Record
 from gcs.session.work import GateInput
 from gcs.vehicle.missions.jobs.job import (
     Asked,
@@ -83,7 +81,6 @@ class Adopt(PreparedJob, StartingJob):
         points = tuple(dict.fromkeys(end for leg in found.path.segments for end in leg))
         return [
             OnBoardChanged(on_board(plan, self._received), points),
-            Record(MissionItem(plan.name, points)),
             GateInput(MissionLoaded(plan.name, len(plan.items))),
             *self.begin_at(None, self._received, view, now_ns),
         ]

@@ -17,6 +17,7 @@ from gcs.protocol.autopilot import ARDUPILOT
 from gcs.protocol.effects import Send
 from gcs.session.effects import ReadFile
 from gcs.session.work import GateInput, GiveVerdict, Log
+from gcs.vehicle.missions.jobs.job import OnBoardChanged
 from gcs.vehicle.missions.jobs.upload import Upload
 from gcs.vehicle.missions.jobs.verified import PAUSE_NS
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -85,13 +86,13 @@ def test_the_gate_forgets_the_old_mission_before_a_message_of_the_new_one_leaves
     assert script.work.index(script.of(GiveVerdict)[0]) < first_send
 
 
-def test_the_file_and_the_path_are_in_the_record() -> None:
-    work = upload().read(BOX).work
-    (file,) = told.recorded(work, "AttachmentItem")
+def test_the_file_is_in_the_record_and_the_path_is_kept() -> None:
+    script = upload().read(BOX)
+    (file,) = told.recorded(script.work, "AttachmentItem")
     assert (file.name, file.data) == ("a.plan", BOX)
-    (path,) = told.recorded(work, "MissionItem")
-    assert (0.0, 0.0, 0.0) in path.path_ned
-    assert len(path.path_ned) > 4
+    path_ned = script.of(OnBoardChanged)[-1].path_ned
+    assert (0.0, 0.0, 0.0) in path_ned
+    assert len(path_ned) > 4
 
 
 def test_ardupilot_is_sent_its_home_as_item_nought() -> None:
