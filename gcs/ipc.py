@@ -68,8 +68,10 @@ class Ask(msgspec.Struct, frozen=True, tag="ask", tag_field="type", omit_default
     A goto has one of `goal_enu`, `move_enu`, `move_body` and `goal_global`.  Where it leads is
     settled when it arrives, by what the vehicle has reported then: the verdict's `goal_enu` tells.
     Of several vehicles: abort, hold, land and rtl without a `vehicle`, or with -1, are for every
-    one that flies, and the first of them answers.  Anything else without one is for the first that
-    was heard behind a bridge, and refused by any other station (SEVERAL_VEHICLES).
+    one that flies.  They have one verdict, accepted if one of them accepts it, and one ending, once
+    all have ended: complete if all are, else that of the first which is not.  Anything else without
+    a `vehicle` is for the first that was heard behind a bridge, and refused by any other station
+    (SEVERAL_VEHICLES).
     """
 
     id: int

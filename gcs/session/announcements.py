@@ -80,7 +80,7 @@ def verdict(told: GiveVerdict, asked: Asked, name: str, sysid: int, now_ns: int)
         told.request_id,
     )
     return [
-        Emit(event, asked.operator),
+        *(Emit(each, asked.operator) for each in asked.verdict(sysid, event)),
         Record(item),
         *_for_bridge(item, asked.operator, name, now_ns),
     ]
@@ -143,7 +143,7 @@ def outcome(told: effects.Outcome, asked: Asked, sysid: int) -> list[Effect]:
     event = ipc.EndingEvent(
         asked.ask.id, item.word, item.outcome, item.code, item.sentence, dict(told.numbers)
     )
-    return [Emit(event, asked.operator), Record(item)]
+    return [*(Emit(each, asked.operator) for each in asked.ending(sysid, event)), Record(item)]
 
 
 def _of_stream(

@@ -9,6 +9,7 @@ from gcs.gate.requests import Request, SetMode
 from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import Autopilot, mode_named
 from gcs.request_words import REQUESTS, BadAskError
+from gcs.session.stop_of_several import StopOfSeveral
 
 FIRST = 1
 """The operator's program that started the station."""
@@ -20,6 +21,15 @@ class Asked:
 
     ask: ipc.Ask
     operator: int = 1
+    several: StopOfSeveral | None = None
+    """What it is a part of, where it stops one of several vehicles."""
+
+    def verdict(self, sysid: int, event: ipc.VerdictEvent) -> list[ipc.Event]:
+        """What its operator is told."""
+        return [event] if self.several is None else self.several.verdict(sysid, event)
+
+    def ending(self, sysid: int, event: ipc.EndingEvent) -> list[ipc.Event]:
+        return [event] if self.several is None else self.several.ending(sysid, event)
 
     @property
     def word(self) -> str:
@@ -69,10 +79,10 @@ class Requests:
         self._next_id = 1
         self._asked: dict[int, Asked] = {}
 
-    def open(self, ask: ipc.Ask, operator: int) -> int:
+    def open(self, ask: ipc.Ask, operator: int, several: StopOfSeveral | None = None) -> int:
         request_id = self._next_id
         self._next_id += 1
-        self._asked[request_id] = Asked(ask, operator)
+        self._asked[request_id] = Asked(ask, operator, several)
         return request_id
 
     def get(self, request_id: int) -> Asked:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import msgspec
 
 from gcs import ipc
@@ -18,6 +16,7 @@ from gcs.request_words import STOPS, BadAskError, Doer, doer_of
 from gcs.session import announcements
 from gcs.session.effects import Emit
 from gcs.session.requests import request_of, source_of
+from gcs.session.stop_of_several import StopOfSeveral
 from gcs.session.work import STATION, ForOwner, Work
 from gcs.station.fleet.goals import settled
 from gcs.station.fleet.separation import Separation
@@ -47,11 +46,13 @@ def line(
         return ForOwner(STATION, (Emit(answer, operator),))
     if not isinstance(command, ipc.Ask | ipc.Stream):
         return ForOwner(STATION, tuple(operators.line(operator, command, None, None, now_ns)))
-    work = [
-        ForOwner(owner, tuple(_asked(operators, vehicles, bridge, operator, asked, owner, now_ns)))
-        for owner, asked in _for_each(operators, vehicles, command)
-    ]
-    return work[0] if len(work) == 1 else ForOwner(STATION, tuple(work))
+    meant = _meant(operators, vehicles, command)
+    several = StopOfSeveral(len(meant)) if len(meant) > 1 else None
+    work = []
+    for owner, asked in meant:
+        told = _asked(operators, vehicles, bridge, operator, asked, owner, several, now_ns)
+        work.append(ForOwner(owner, tuple(told)))
+    return work[0] if several is None else ForOwner(STATION, tuple(work))
 
 
 def _asked(
@@ -61,6 +62,7 @@ def _asked(
     operator: int,
     command: ipc.Ask | ipc.Stream,
     owner: int,
+    several: StopOfSeveral | None,
     now_ns: int,
 ) -> list[Work]:
     """What is asked of one vehicle."""
@@ -77,7 +79,7 @@ def _asked(
         streamed = vehicles.of_owner(owner).orbits.streams_itself(operator)
         return [*streamed, *operators.line(operator, command, autopilot, refusal, now_ns)]
     if held is None:
-        return operators.line(operator, command, autopilot, refusal, now_ns)
+        return operators.line(operator, command, autopilot, refusal, now_ns, several)
     told = operators.line(operator, command, autopilot, refusal or HEIGHT_WRITTEN, now_ns)
     return [held, *told]
 
@@ -150,28 +152,26 @@ def _checked(
     return announcements.checked(ask, verdict, goal)
 
 
-def _for_each(
+def _meant(
     operators: Operators, vehicles: Vehicles, command: ipc.Ask | ipc.Stream
-) -> Iterator[tuple[int, ipc.Ask | ipc.Stream]]:
-    """The vehicles that a command is for, by slot, and what is asked of each.
-
-    The operator is answered once, by its own number; of the others a stop has the number 0.
-    """
+) -> list[tuple[int, ipc.Ask | ipc.Stream]]:
+    """The vehicles that a command is for, by slot, and what is asked of each."""
     sysid = operators.vehicle_of(command)
     stops = isinstance(command, ipc.Ask) and command.word in STOPS and not command.operation
     if stops and sysid == ipc.EVERY:
         sysid, command = 0, msgspec.structs.replace(command, vehicle=0)
     flying = _in_the_air(vehicles) if stops and not sysid else []
     if not flying:
-        yield vehicles.owner_for(sysid), command
-    for number, slot in enumerate(flying):
-        yield slot, command if number == 0 else msgspec.structs.replace(command, id=0)
+        return [(vehicles.owner_for(sysid), command)]
+    return [
+        (slot, msgspec.structs.replace(command, vehicle=vehicles.of_owner(slot).sysid))
+        for slot in flying
+    ]
 
 
 def _in_the_air(vehicles: Vehicles) -> list[int]:
-    """The slots of all that were not last seen on the ground; those that are lost or stale, whose
-    answer may not come, at the end: the link to a vehicle may be there while the one from it is
-    not."""
+    """The slots of all that were not last seen on the ground, those that are lost or stale at the
+    end: the link to a vehicle may be there while the one from it is not."""
     known = [
         (vehicle.gate.state in NOT_FLYING, slot)
         for slot, vehicle in enumerate(vehicles)

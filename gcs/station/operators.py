@@ -24,6 +24,7 @@ from gcs.session.effects import Effect, Emit, ShowTopics
 from gcs.session.requests import FIRST, Requests, operator_of, request_of
 from gcs.session.setup import Setup
 from gcs.session.speedup_waits import Times
+from gcs.session.stop_of_several import StopOfSeveral
 from gcs.session.work import (
     AskMission,
     AskOrbit,
@@ -151,12 +152,14 @@ class Operators:
         autopilot: Autopilot | None,
         no_vehicle: Refusal | None,
         now_ns: int,
+        several: StopOfSeveral | None = None,
     ) -> list[Work]:
         """One command; `autopilot` is the vehicle's, None before one is heard; `no_vehicle` says
-        why nothing can be asked of any, such as several that are heard."""
+        why nothing can be asked of any, such as several that are heard; `several`: what it is a
+        part of."""
         match command:
             case ipc.Ask():
-                return self._ask(operator, command, autopilot, no_vehicle, now_ns)
+                return self._ask(operator, command, autopilot, no_vehicle, now_ns, several)
             case ipc.Stream():
                 return self._stream(operator, command, no_vehicle, now_ns)
             case ipc.Pending(goal_enu, yaw_deg):
@@ -193,38 +196,43 @@ class Operators:
         autopilot: Autopilot | None,
         no_vehicle: Refusal | None,
         now_ns: int,
+        several: StopOfSeveral | None,
     ) -> list[Work]:
         """What cannot be judged at all takes no control."""
+
+        def opened() -> int:
+            return self._requests.open(ask, operator, several)
+
         refusal = self.control.refusal(operator, ask)
         if refusal is not None:
-            return self._refuse(self._requests.open(ask, operator), ask, refusal)
+            return self._refuse(opened(), ask, refusal)
         doer = doer_of(ask.word)
         if doer is Doer.STATION:
             return self._ask_station(operator, ask, now_ns)
         if ask.operation:
             return self._ask_stop(operator, ask)
         if no_vehicle is not None:
-            return self._refuse(self._requests.open(ask, operator), ask, no_vehicle)
+            return self._refuse(opened(), ask, no_vehicle)
         if doer in (Doer.JOB, Doer.TRANSFER):
             given = self._give_where_free(operator, ask, now_ns)
-            return [*given, AskMission(self._requests.open(ask, operator), ask)]
+            return [*given, AskMission(opened(), ask)]
         if doer is Doer.READER:
             given = self._give_where_free(operator, ask, now_ns)
-            return [*given, AskReader(self._requests.open(ask, operator), ask)]
+            return [*given, AskReader(opened(), ask)]
         if doer is Doer.ORBIT:
             given = self._give_where_free(operator, ask, now_ns)
-            return [*given, AskOrbit(self._requests.open(ask, operator), ask, operator)]
+            return [*given, AskOrbit(opened(), ask, operator)]
         if doer is Doer.LEGS:
             given = self._give_where_free(operator, ask, now_ns)
             speed_m_s = math.nan if ask.speed_m_s is None else ask.speed_m_s
-            return [*given, AskSpeed(self._requests.open(ask, operator), speed_m_s)]
+            return [*given, AskSpeed(opened(), speed_m_s)]
         try:
             request = request_of(ask, autopilot or GENERIC)
         except BadAskError as error:
             refused = ipc.VerdictEvent(ask.id, ask.word, "refused", "BAD_REQUEST", str(error))
             return [Emit(refused, operator)]
         given = self._give_where_free(operator, ask, now_ns)
-        request_id = self._requests.open(ask, operator)
+        request_id = opened()
         if isinstance(request, SetMode) and request.meaning is FlightMode.MISSION:
             # The mission mode by its name is a mission start, and is verified like one.
             return [*given, AskMission(request_id, ask)]

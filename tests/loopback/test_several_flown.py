@@ -112,6 +112,32 @@ def test_a_stop_is_for_the_named_one_or_for_every_one() -> None:
             assert flight.done(flight.ask_for("resume", sysid)) == "complete"
 
 
+def test_a_landing_of_all_ends_when_the_last_has_landed_and_is_answered_once() -> None:
+    flight = TwoFlown().both_up()
+    assert flight.done(flight.ask_for("goto", 2, goal_enu=(0.0, 0.0, 15.0))) == "complete"
+    landing = flight.ask_for("land", ipc.EVERY)
+    flight.reaches(1, State.GROUNDED, 60.0)
+    assert flight.state_of(2) is State.LANDING
+    assert flight.outcome(landing) is None
+    assert flight.done(landing) == "complete"
+    assert flight.state_of(2) is State.GROUNDED
+    endings = [each for each in flight.of(ipc.EndingEvent) if each.id == landing]
+    assert (len(flight.verdicts(landing)), len(endings)) == (1, 1)
+    for sysid in (1, 2):
+        assert f"vehicle {sysid}: Complete: land" in flight.told()
+
+
+def test_a_landing_of_all_ends_as_the_one_that_is_not_complete() -> None:
+    flight = TwoFlown().both_up()
+    landing = flight.ask_for("land")
+    assert flight.done(flight.ask_for("hold", 2)) == "complete"
+    assert flight.outcome(landing) is None, "the other one still lands"
+    assert flight.done(landing) == "aborted OPERATOR"
+    (ended,) = [each for each in flight.of(ipc.EndingEvent) if each.id == landing]
+    assert (ended.code, ended.sentence.split(":")[0]) == ("OPERATOR", "vehicle 2")
+    assert flight.state_of(1) is State.GROUNDED
+
+
 def test_a_vehicle_that_comes_later_leaves_the_first_one_meant() -> None:
     flight = TwoFlown()
     flight.silent.add(2)

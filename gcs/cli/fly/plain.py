@@ -12,7 +12,6 @@ import msgspec
 from gcs import ipc, request_words
 from gcs.cli.fly.line_queue import AtOnce, BadLine, LineQueue
 from gcs.exit_codes import ExitCode
-from gcs.gate.states import LandedState
 from gcs.operator import line_parser, preflight
 from gcs.operator.chosen_vehicle import ChosenVehicle
 from gcs.operator.client import Polling, StationEnded
@@ -78,8 +77,6 @@ class Plain:
         self._refused_velocities = False
         self._preflight_fails = False
         self._sent_at_once: list[TrackedRequest] = []
-        self._of_all: list[tuple[str, list[TrackedRequest]]] = []
-        """Lines that stop several vehicles, with their requests; until all of those are settled."""
         self._until_heard: list[line_parser.Line] = []
 
     def run(self, lines: LineQueue) -> int:
@@ -149,28 +146,7 @@ class Plain:
     def _send_at_once(self, line: line_parser.Line) -> None:
         assert isinstance(line.action, request_words.SendRequests)
         (request,) = line.action.requests
-        self._sent_at_once.extend(self._send_stop(request, line.text))
-
-    def _send_stop(self, asked: ipc.Ask, text: str) -> list[TrackedRequest]:
-        """A stop of several vehicles is a request to each that flies: each has its own ending.
-
-        An abort is one request: the station is quicker, and knows best which of them fly.
-        """
-        every = asked.vehicle == ipc.EVERY or not self._connection.sysid
-        flying = _flying(self._dialogue.snapshot) if every and asked.word != "abort" else []
-        if len(flying) < 2:
-            return [self._dialogue.send(asked, text)]
-        each = [(msgspec.structs.replace(asked, vehicle=sysid), sysid) for sysid in flying]
-        sent = [self._dialogue.send(one, f"vehicle {sysid}: {one.word}") for one, sysid in each]
-        self._of_all.append((text, sent))
-        return sent
-
-    def _tell_of_all(self) -> None:
-        """What became of the stops of several vehicles that are settled: the worst of each."""
-        settled = [one for one in self._of_all if all(each.settled for each in one[1])]
-        for one in settled:
-            self._of_all.remove(one)
-            self._out(_worst(*one))
+        self._sent_at_once.append(self._dialogue.send(request, line.text))
 
     def _tell_dropped(
         self, line: line_parser.Line | BadLine, by: line_parser.Line | BadLine
@@ -208,10 +184,6 @@ class Plain:
 
     def _act(self, line: line_parser.Line) -> None:
         match line.action:
-            case request_words.SendRequests((asked,)) if asked.word in request_words.STOPS:
-                sent = self._send_stop(asked, line.text)
-                if line.wait:
-                    self._dialogue.wait_until(lambda: all(each.settled for each in sent))
             case request_words.SendRequests(requests) if line.wait:
                 self._dialogue.send_in_turn(requests, line.text, lambda: not self._overtaken)
             case request_words.SendRequests(requests):
@@ -334,7 +306,6 @@ class Plain:
                 self._err("\n".join(event_text.trouble_lines(event)))
             case _:
                 pass
-        self._tell_of_all()
 
     def _says_nothing(self, event: ipc.Event, request: TrackedRequest | None) -> bool:
         """Of a typed velocity: that its stream is ended in good order, as one that was refused is
@@ -365,25 +336,6 @@ class Plain:
         elif self._preflight_fails:
             undone = ExitCode.DIFFERENT
         return self._dialogue.first_failure() or undone
-
-
-def _flying(seen: ipc.Snapshot | None) -> list[int]:
-    """The system ids of all that were not last seen on the ground."""
-    if seen is None:
-        return []
-    shown = [seen.sysid] if seen.vehicle and seen.landed != LandedState.ON_GROUND.name else []
-    return sorted(shown + [each.vehicle for each in seen.others if not each.on_ground])
-
-
-def _worst(text: str, sent: list[TrackedRequest]) -> str:
-    """The line of a stop of several vehicles: a refusal, else what is not complete."""
-    worst = max(sent, key=lambda each: (not each.completed, each.outcome is None))
-    if worst.outcome is None:
-        assert worst.verdict is not None
-        return f"{text}: {event_text.verdict_line(worst.label, worst.verdict)}"
-    if not worst.completed:
-        return f"{text}: {event_text.outcome_line(worst.label, worst.outcome)}"
-    return f"{text}: complete"
 
 
 def _chosen_before(stop: AtOnce) -> bool:

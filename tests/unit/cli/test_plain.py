@@ -13,7 +13,6 @@ from gcs import ipc
 from gcs.cli.fly.line_queue import LineQueue
 from gcs.cli.fly.plain import Plain, PlainConfig
 from gcs.exit_codes import ExitCode
-from gcs.operator.client import StationEvent
 from gcs.operator.errors import ExitError
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 
@@ -412,62 +411,6 @@ def test_what_follows_a_choice_is_for_that_vehicle_and_a_stop_of_all_for_every_o
     assert ipc.Show(2) in session.connection.sent
     assert any(line.startswith("vehicle 2: GROUNDED") for line in session.out)
     assert any("from 1 to 255, got 300" in line for line in session.err)
-
-
-class TwoFlown(FakeConnection):
-    """Vehicle 2 flies for itself; what names no vehicle is for the first."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.second = FakeStation()
-
-    def send(self, command: ipc.Command) -> bool:
-        if isinstance(command, ipc.Ask) and command.vehicle == 2:
-            self.sent.append(command)
-            self._events.extend(self.second.handle(command, self.time_s))
-            return True
-        return super().send(command)
-
-    def _ended_or_tick(self) -> Sequence[StationEvent]:
-        told = self.second.tick(self.time_s)
-        self.station.others = [
-            ipc.OtherVehicle(sysid, one.state, "NOMINAL", on_ground=one.pos[2] <= 0.1)
-            for sysid, one in ((1, self.station), (2, self.second))
-        ]
-        return [
-            *super()._ended_or_tick(),
-            *(each for each in told if not isinstance(each, ipc.Snapshot)),
-        ]
-
-
-BOTH_UP = "vehicle 1\narm\ntakeoff 2\nvehicle 2\narm\ntakeoff 12\n"
-
-
-def test_a_landing_of_all_is_complete_when_the_last_has_landed() -> None:
-    session = Session(f"{BOTH_UP}land all\n", connection=TwoFlown())
-    assert session.out[-5:] == [
-        "vehicle 1: land: accepted",
-        "vehicle 2: land: accepted",
-        "vehicle 1: land: complete",
-        "vehicle 2: land: complete",
-        "land all: complete",
-    ]
-    assert session.connection.station.state == "GROUNDED"
-    assert isinstance(session.connection, TwoFlown)
-    assert session.connection.second.state == "GROUNDED"
-
-
-def test_a_landing_of_all_ends_with_the_worst_of_its_endings() -> None:
-    script = f"{BOTH_UP}land all &\nwait 2\nhold\n"
-    session = Session(script, PlainConfig(strict=True), connection=TwoFlown())
-    assert session.out[-5:] == [
-        "vehicle 1: land: complete",
-        "vehicle 2: land: aborted OPERATOR",
-        "land all: vehicle 2: land: aborted OPERATOR",
-        "hold: accepted",
-        "hold: complete",
-    ]
-    assert session.exit_code == ExitCode.NOT_COMPLETED
 
 
 def test_an_abort_that_overtakes_a_choice_is_for_every_vehicle() -> None:
