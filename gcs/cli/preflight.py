@@ -64,11 +64,11 @@ def _look(
 
 def _settled(dialogue: Dialogue, timeout_s: float) -> ipc.PreflightReport:
     """The report once nothing is still to come, or the time is over."""
-    from gcs.operator.preflight import waits
+    from gcs.operator.preflight import waiting
 
     report = dialogue.look_before_flight()
     left_s = timeout_s
-    while waits(report) and left_s > 0.0:
+    while waiting(report) and left_s > 0.0:
         dialogue.wait_until(lambda: False, LOOK_S)
         left_s -= LOOK_S
         report = dialogue.look_before_flight()

@@ -13,11 +13,14 @@ from gcs.cli.progress import ProgressDisplay
 from gcs.enu_text import signed_enu
 from gcs.exit_codes import ExitCode
 from gcs.operator.dialogue import Dialogue
+from gcs.operator.preflight import waiting
 from gcs.operator.text.control_text import control_words
 from gcs.operator.text.event_text import whole_degrees
 
 SLOW_VALUES_WAIT_S = 1.5
 """Battery and mode come less often than the position."""
+FAILSAFES_WAIT_S = 10.0
+"""An autopilot's own failsafes are read parameter by parameter when it appears."""
 
 
 def report(dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool) -> ExitCode:
@@ -30,7 +33,13 @@ def report(dialogue: Dialogue, display: ProgressDisplay, *, as_json: bool) -> Ex
         others = len(seen.vehicles) > 1 or (hello is not None and bool(hello.client_ports))
         return not others or dialogue.bridge is not None
 
+    def failsafes_told() -> bool:
+        seen = dialogue.snapshot
+        return seen is not None and bool(seen.failsafes)
+
     dialogue.wait_until(whole, SLOW_VALUES_WAIT_S)
+    if not failsafes_told() and "failsafes" in waiting(dialogue.look_before_flight()):
+        dialogue.wait_until(failsafes_told, FAILSAFES_WAIT_S)
     display.clear()
     return show(dialogue.snapshot, dialogue.number, as_json=as_json, bridge=dialogue.bridge)
 
@@ -90,7 +99,7 @@ def rows(
         ("home", f"{signed_enu(seen.home_enu)} m"),
         ("gps", f"{seen.gps or '-'}, estimator {seen.estimator or '-'}"),
         ("battery", f"{_fixed(seen.battery_pct, '%', 0)}, {_fixed(seen.battery_v, 'V', 1)}"),
-        ("failsafes", "\n".join(seen.failsafes) or "-"),
+        ("failsafes", "\n".join(seen.failsafes) or "not read yet"),
         *([("what mends them", "\n".join(seen.mends))] if seen.mends else []),
         ("link", _link(seen)),
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),

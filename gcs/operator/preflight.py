@@ -9,9 +9,9 @@ from gcs import ipc
 SIGNS = {"pass": "pass", "caution": "CAUTION", "fail": "FAIL"}
 
 
-def waits(report: ipc.PreflightReport) -> bool:
-    """Whether something of it may still come by itself."""
-    return any(row.waits for row in report.rows)
+def waiting(report: ipc.PreflightReport) -> list[str]:
+    """The names of the rows that wait for what may still come by itself."""
+    return [row.name for row in report.rows if row.waits]
 
 
 def to_read(report: ipc.PreflightReport) -> Iterator[list[ipc.Ask]]:

@@ -278,7 +278,7 @@ class Station(Flights, Missions, Parameters):
         """
         deadline_s = time.monotonic() + timeout_s
         report = self._preflight()
-        while preflight.waits(report) and time.monotonic() < deadline_s:
+        while preflight.waiting(report) and time.monotonic() < deadline_s:
             self.wait_until(lambda: False, LOOK_S)
             report = self._preflight()
         for alternatives in preflight.to_read(report):

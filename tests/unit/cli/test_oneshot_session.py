@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from functools import partial
 
+import msgspec
 import pytest
 
 from gcs import ipc
@@ -135,3 +136,25 @@ def test_status_is_a_table_or_json(capsys: pytest.CaptureFixture[str]) -> None:
     table, line = capsys.readouterr().out.rstrip().rsplit("\n", 1)
     assert "GROUNDED, control NONE" in table
     assert json.loads(line)["state"] == "GROUNDED"
+
+
+class ReadLate(FakeStation):
+    """Reads its vehicle's own failsafes `after_s` after the start."""
+
+    after_s = 4.0
+
+    def snapshot(self) -> ipc.Snapshot:
+        known = ["geofence breach: hold"] if self.time_s >= self.after_s else []
+        return msgspec.structs.replace(super().snapshot(), failsafes=known)
+
+
+@pytest.mark.parametrize(("after_s", "told"), [(4.0, "geofence breach: hold"), (60.0, "not read")])
+def test_status_waits_for_failsafes_that_are_being_read(
+    after_s: float, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    station = ReadLate()
+    station.after_s = after_s
+    station.preflight_rows = [ipc.PreflightRow("failsafes", "caution", "are read", waits=True)]
+    how = OneShotConfig(10.0, 0.0, as_json=False, what="status")
+    run_over(FakeConnection(station), NoInterrupts(), how, partial(report, as_json=False))
+    assert told in capsys.readouterr().out
