@@ -31,6 +31,7 @@ _CM: Final = 0.01
 
 # fmt: off
 RENAMED: Final = (
+    Renamed("ATC_ANGLE_MAX",    "ANGLE_MAX",       _CM),
     Renamed("CIRCLE_RADIUS_M",  "CIRCLE_RADIUS",   _CM),
     Renamed("LAND_ALT_LOW_M",   "LAND_ALT_LOW",    _CM),
     Renamed("LAND_SPD_HIGH_MS", "LAND_SPEED_HIGH", _CM),
@@ -39,12 +40,18 @@ RENAMED: Final = (
     Renamed("MAV_GCS_SYSID",    "SYSID_MYGCS"),
     Renamed("MAV_OPTIONS",      "SYSID_ENFORCE"),
     Renamed("MAV_SYSID",        "SYSID_THISMAV"),
+    Renamed("PSC_JERK_NE",      "PSC_JERK_XY"),
+    Renamed("PSC_NE_POS_P",     "PSC_POSXY_P"),
+    Renamed("PSC_NE_VEL_D",     "PSC_VELXY_D"),
+    Renamed("PSC_NE_VEL_I",     "PSC_VELXY_I"),
+    Renamed("PSC_NE_VEL_P",     "PSC_VELXY_P"),
     Renamed("RTL_ALT_FINAL_M",  "RTL_ALT_FINAL",   _CM),
     Renamed("RTL_ALT_M",        "RTL_ALT",         _CM),
     Renamed("RTL_CLIMB_MIN_M",  "RTL_CLIMB_MIN",   _CM),
     Renamed("RTL_SPEED_MS",     "RTL_SPEED",       _CM),
     Renamed("WP_ACC",           "WPNAV_ACCEL",     _CM),
     Renamed("WP_ACC_Z",         "WPNAV_ACCEL_Z",   _CM),
+    Renamed("WP_JERK",          "WPNAV_JERK"),
     Renamed("WP_RADIUS_M",      "WPNAV_RADIUS",    _CM),
     Renamed("WP_SPD",           "WPNAV_SPEED",     _CM),
     Renamed("WP_SPD_DN",        "WPNAV_SPEED_DN",  _CM),

@@ -64,7 +64,8 @@ TYPES: Final = frozenset(int(kind) for kind in ParamType)
 @dataclass(frozen=True, slots=True)
 class Stops:
     """What is known of them: `others` than those that the bounds were recorded with, in words, and
-    the commands that set them so again; `unread`, by every name that each of them may have."""
+    the commands that set them so again; `unread`, by every name that each of them may have, first
+    the one of the firmware that the vehicle seems to have."""
 
     others: tuple[str, ...] = ()
     mends: tuple[str, ...] = ()
@@ -88,11 +89,12 @@ class StopParameters:
             if name in self._values and _differ(self._values[name], value)
             if name not in SHORTER_IS_SAFER or self._values[name] > value
         }
+        older = any(name.name != newest for newest, name in self._names.items())
         return Stops(
             tuple(f"{name} is {self._values[name]:g}, not {v:g}" for name, v in others.items()),
             tuple(self._command(name, value) for name, value in others.items()),
             tuple(
-                tuple(each.name for each in names_of(name))
+                tuple(each.name for each in names_of(name))[:: -1 if older else 1]
                 for name in recorded
                 if name not in self._values
             ),

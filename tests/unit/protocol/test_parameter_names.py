@@ -8,6 +8,7 @@ from gcs.protocol.parameter_names import RENAMED, ParameterName, names_of
 from vehicle_sim.autopilot.parameters.tables.renamed import COPTER_4_7
 
 LISTED_BY_4_7 = {
+    "ATC_ANGLE_MAX",
     "CIRCLE_RADIUS_M",
     "LAND_ALT_LOW_M",
     "LAND_SPD_HIGH_MS",
@@ -16,12 +17,18 @@ LISTED_BY_4_7 = {
     "MAV_GCS_SYSID",
     "MAV_OPTIONS",
     "MAV_SYSID",
+    "PSC_JERK_NE",
+    "PSC_NE_POS_P",
+    "PSC_NE_VEL_D",
+    "PSC_NE_VEL_I",
+    "PSC_NE_VEL_P",
     "RTL_ALT_FINAL_M",
     "RTL_ALT_M",
     "RTL_CLIMB_MIN_M",
     "RTL_SPEED_MS",
     "WP_ACC",
     "WP_ACC_Z",
+    "WP_JERK",
     "WP_RADIUS_M",
     "WP_SPD",
     "WP_SPD_DN",

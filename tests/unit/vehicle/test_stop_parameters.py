@@ -65,3 +65,15 @@ def test_a_vehicle_that_waits_less_for_setpoints_stops_no_later(value: float, ot
     assert len(known.others) == len(known.mends) == others
     assert ("GUID_TIMEOUT",) not in known.unread
     assert ("WP_SPD", "WPNAV_SPEED") in known.unread
+
+
+@pytest.mark.parametrize(
+    ("speed", "lean"), [("WP_SPD", "ATC_ANGLE_MAX"), ("WPNAV_SPEED", "ANGLE_MAX")]
+)
+def test_what_was_not_read_is_named_as_the_vehicle_names_what_was(speed: str, lean: str) -> None:
+    """4.5 does not know the names of 4.7: `gcs param get` of one ends with BAD_PARAMETER."""
+    part = StopParameters()
+    scale = 100.0 if speed == "WPNAV_SPEED" else 1.0
+    part.heard(ParamValue(10.0 * scale, 900, 0, speed, ParamType.REAL32), ARDUPILOT)
+    names = next(each for each in part.known("ardupilot").unread if "ANGLE_MAX" in each)
+    assert (names[0], set(names)) == (lean, {"ANGLE_MAX", "ATC_ANGLE_MAX"})

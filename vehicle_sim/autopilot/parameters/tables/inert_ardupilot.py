@@ -162,7 +162,7 @@ INERT = (
         "ATC_THR_MIX_MAN": 0.1, "ATC_THR_MIX_MAX": 0.5, "ATC_THR_MIX_MIN": 0.1,
         "LOIT_ANG_MAX": 0.0, "LOIT_BRK_ACCEL": 250.0, "LOIT_BRK_DELAY": 1.0,
         "LOIT_BRK_JERK": 500.0, "PILOT_THR_FILT": 0.0, "PILOT_Y_EXPO": 0.0, "PILOT_Y_RATE_TC": 0.0,
-        "PSC_ACCZ_P": 0.5, "PSC_VELXY_D": 0.25, "TKOFF_THR_MAX": 0.9,
+        "PSC_ACCZ_P": 0.5, "PSC_ANGLE_MAX": 0.0, "PSC_VELXY_D": 0.25, "TKOFF_THR_MAX": 0.9,
         "WPNAV_JERK": 1.0, "WPNAV_TER_MARGIN": 10.0, "WP_ACC_CNR": 0.0, "WP_NAVALT_MIN": 0.0,
     }),
     *inert("system", StoredAs.INT8, {
