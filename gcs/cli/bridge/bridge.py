@@ -209,7 +209,7 @@ def _run(
 
     from gcs.cli.bridge.lines import BridgeLines
     from gcs.cli.bridge.watch import watch
-    from gcs.cli.fly.plain import to_stderr, to_stdout
+    from gcs.cli.fly.standard_streams import to_stderr, to_stdout
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
 

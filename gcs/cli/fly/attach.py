@@ -62,7 +62,8 @@ def attach(
     if take:
         station.send(Ask(0, "station_take"))
     if plain:
-        from gcs.cli.fly.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
+        from gcs.cli.fly.standard_streams import stdin_input, to_stderr, to_stdout
+        from gcs.operator.console.plain import Plain, PlainConfig
         from gcs.operator.interrupts import Interrupts
 
         how = PlainConfig(timeout, 2, as_json, strict, vehicle=vehicle or 0)

@@ -158,8 +158,9 @@ def _fly_plain(
     as_json: bool,
     strict: bool,
 ) -> int:
-    from gcs.cli.fly.plain import Plain, PlainConfig, stdin_input, to_stderr, to_stdout
+    from gcs.cli.fly.standard_streams import stdin_input, to_stderr, to_stdout
     from gcs.operator.client import StationClient
+    from gcs.operator.console.plain import Plain, PlainConfig
     from gcs.operator.interrupts import Interrupts
 
     how = PlainConfig(
@@ -192,7 +193,7 @@ def needs_a_terminal() -> None:
     """Raises UsageError where the screen has none."""
     import sys
 
-    from gcs.cli.fly.plain import stdin_is_a_terminal
+    from gcs.cli.fly.standard_streams import stdin_is_a_terminal
 
     if not (stdin_is_a_terminal() and sys.stdout.isatty() and sys.stderr.isatty()):
         raise click.UsageError("the keyboard station needs a terminal; use --plain on a pipe")

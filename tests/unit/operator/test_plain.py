@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from gcs import ipc
-from gcs.cli.fly.line_queue import LineQueue
-from gcs.cli.fly.plain import Plain, PlainConfig
 from gcs.exit_codes import ExitCode
+from gcs.operator.console.line_queue import LineQueue
+from gcs.operator.console.plain import Plain, PlainConfig
 from gcs.operator.errors import ExitError
 from tests.unit.operator.fake_station import FakeConnection, FakeStation, NoInterrupts
 

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import msgspec
 
 from gcs import ipc, request_words
-from gcs.cli.fly.line_queue import AtOnce, BadLine, LineQueue
 from gcs.exit_codes import ExitCode
 from gcs.operator import line_parser, preflight
 from gcs.operator.chosen_vehicle import ChosenVehicle
 from gcs.operator.client import Polling, StationEnded
+from gcs.operator.console.line_queue import AtOnce, BadLine, Lines
 from gcs.operator.conversation import TrackedRequest, exit_code_of
 from gcs.operator.dialogue import SETTLE_WAIT_S, Dialogue, InterruptSource
 from gcs.operator.errors import ExitError, Interrupted
@@ -79,7 +77,7 @@ class Plain:
         self._sent_at_once: list[TrackedRequest] = []
         self._until_heard: list[line_parser.Line] = []
 
-    def run(self, lines: LineQueue) -> int:
+    def run(self, lines: Lines) -> int:
         """Until `quit`, the end of the input, or Ctrl-C; returns the exit code."""
         try:
             self._watch(lines)
@@ -100,13 +98,13 @@ class Plain:
 
     # ------------------------------------------------------------- lines that act at once
 
-    def _watch(self, lines: LineQueue) -> None:
+    def _watch(self, lines: Lines) -> None:
         if lines.ended or lines.full:
             self._dialogue.unwatch()
         else:
             self._dialogue.watch(lines, lambda: self._read(lines))
 
-    def _read(self, lines: LineQueue) -> None:
+    def _read(self, lines: Lines) -> None:
         for each in lines.read():
             for dropped in each.dropped:
                 self._tell_dropped(dropped, each.line)
@@ -161,7 +159,7 @@ class Plain:
 
     # --------------------------------------------------------------------- lines in turn
 
-    def _run_lines(self, lines: LineQueue) -> None:
+    def _run_lines(self, lines: Lines) -> None:
         while (line := self._next_line(lines)) is not None:
             self._overtaken = False
             if isinstance(line, BadLine):
@@ -171,7 +169,7 @@ class Plain:
             else:
                 self._act(line)
 
-    def _next_line(self, lines: LineQueue) -> line_parser.Line | BadLine | None:
+    def _next_line(self, lines: Lines) -> line_parser.Line | BadLine | None:
         """None at the end of the input.  The station's events are read meanwhile."""
         while True:
             self._dialogue.wait_until(lambda: all(each.settled for each in self._sent_at_once))
@@ -363,20 +361,3 @@ def overtaken(stop: AtOnce) -> str:
         f"gcs: {stop.line.text} acted as soon as it was read: {lines} not done\n"
         f"  hint: write {in_turn} for a stop that waits for its turn"
     )
-
-
-def stdin_input() -> LineQueue:
-    return LineQueue(sys.stdin.fileno(), "<stdin>", typed=stdin_is_a_terminal())
-
-
-def to_stdout(line: str) -> None:
-    """Answers are flushed at once: whoever reads the pipe waits for them."""
-    print(line, flush=True)
-
-
-def to_stderr(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
-
-
-def stdin_is_a_terminal() -> bool:
-    return os.isatty(sys.stdin.fileno())

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from gcs.operator.line_parser import Line, LineError, parse_line
 from gcs.request_words import Quit, SendRequests
@@ -28,6 +30,44 @@ class AtOnce:
 
     line: Line | BadLine
     dropped: tuple[Line | BadLine, ...] = ()
+
+
+class Lines(Protocol):
+    """Where a console takes its lines from; see `LineQueue`."""
+
+    @property
+    def typed(self) -> bool: ...
+    @property
+    def ended(self) -> bool: ...
+    @property
+    def typed_end(self) -> bool: ...
+    @property
+    def full(self) -> bool: ...
+    def fileno(self) -> int: ...
+    def take(self) -> Line | BadLine | None: ...
+    def read(self) -> list[AtOnce]: ...
+
+
+class ScriptLines:
+    """Lines that are all there from the start: each has its turn, an abort too."""
+
+    typed = typed_end = full = False
+    ended = True
+
+    def __init__(self, lines: Sequence[str], name: str) -> None:
+        """`name` is what errors call them."""
+        parsed = (_parsed(text, f"{name}:{number}") for number, text in enumerate(lines, 1))
+        self._waiting = deque(line for line in parsed if line is not None)
+
+    def fileno(self) -> int:
+        """Nothing more comes: there is nothing to wait for."""
+        return -1
+
+    def take(self) -> Line | BadLine | None:
+        return self._waiting.popleft() if self._waiting else None
+
+    def read(self) -> list[AtOnce]:
+        return []
 
 
 class LineQueue:
@@ -67,7 +107,7 @@ class LineQueue:
         found: list[AtOnce] = []
         for text in self._source.read():
             self._number += 1
-            line = self._parse(text.decode(errors="replace"))
+            line = _parsed(text.decode(errors="replace"), f"{self._name}:{self._number}")
             if line is None:
                 continue
             # Nobody who types waits for the news that a line was in vain.
@@ -86,8 +126,9 @@ class LineQueue:
         self._waiting.clear()
         return dropped
 
-    def _parse(self, text: str) -> Line | BadLine | None:
-        try:
-            return parse_line(text)
-        except LineError as error:
-            return BadLine(f"{self._name}:{self._number}", error.sentence, error.hint)
+
+def _parsed(text: str, where: str) -> Line | BadLine | None:
+    try:
+        return parse_line(text)
+    except LineError as error:
+        return BadLine(where, error.sentence, error.hint)
