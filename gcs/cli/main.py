@@ -99,6 +99,9 @@ COMMANDS: dict[str, dict[str, Entry]] = {
             "gcs.cli.topic.topic:topic", "Messages live or recorded: list, echo, hz, plot."
         ),
         "graph": Entry("gcs.cli.graph:graph", "Who sends what to whom, with rates; SVG, DOT."),
+        "campaign": Entry(
+            "gcs.cli.campaign.campaign:campaign", "Many flights on a virtual clock: run, show."
+        ),
         "log": Entry("gcs.cli.log.log:log", "Recorded flights: info, layout, recover, replay."),
         "completion": Entry(
             "gcs.cli.completion:completion", "For bash, zsh and fish: words, files, vehicles."

@@ -1,0 +1,1 @@
+"""`gcs campaign`."""
