@@ -67,9 +67,9 @@ class AuditResult:
         return self.whole and self.differences == 0
 
 
-OwnRule: TypeAlias = Callable[[Vec3, Vec3, Policy], tuple[str | None, bool]]
-"""The auditor's own copy of the operator's rule: asked about start and goal (ENU, metres), it says
-its sentence, or None where it permits; and whether it failed."""
+OwnRule: TypeAlias = Callable[[tuple[tuple[Vec3, Vec3], ...], Policy], tuple[str | None, bool]]
+"""The auditor's own copy of the operator's rule: asked about the legs of a request (ENU, metres),
+it says its sentence, or None where it permits; and whether it failed."""
 
 
 def audit(
@@ -171,7 +171,7 @@ class _Audit:
         self._rule_answers.append(said.request_id)
         if self._rule is None:
             return
-        anew, failed = self._rule(asked.start_enu, asked.goal_enu, policy)
+        anew, failed = self._rule(asked.legs_enu, policy)
         if anew != said.refusal and not (failed and said.failed):
             self._difference(turn, "own rule", said.refusal or "permits", anew or "permits")
 

@@ -53,12 +53,11 @@ class WriteFile(msgspec.Struct, frozen=True, gc=False):
 
 
 class AskRule(msgspec.Struct, frozen=True):
-    """Ask the operator's own rule whether the vehicle may fly from `start_enu` to `goal_enu`
-    (metres).  The answer is a `RuleSaid`; none may come."""
+    """Ask the operator's own rule whether the vehicle may fly these legs, each a start and an end
+    (ENU, metres).  The answer is a `RuleSaid`; none may come."""
 
     request_id: int
-    start_enu: Vec3
-    goal_enu: Vec3
+    legs_enu: tuple[tuple[Vec3, Vec3], ...]
 
 
 class ClientVerified(msgspec.Struct, frozen=True, gc=False):

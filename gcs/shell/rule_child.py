@@ -7,7 +7,8 @@ every line has one answer on standard output, the first one too.  The rule is a 
         ...
 
 `start` and `goal` are `Place`s, `policy` is the station's policy as a dict, with the keys of its
-file.  What it returns permits (None) or refuses (a sentence).  Whatever else happens refuses.
+file.  It is asked for one leg after the other.  What it returns permits (None) or refuses (a
+sentence).  Whatever else happens refuses.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ import os
 import signal
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import PurePath
 from typing import Any, NamedTuple, TypeAlias
 
 LIMIT_S = 0.3
-"""How long `verify` may take, where the system has timers for a process; the station itself waits
-a little longer."""
+"""How long `verify` may take for all legs of a way, where the system has timers for a process; the
+station itself waits a little longer."""
 MOST_LETTERS = 2_000
 """Of a refusal, and of what is printed at one question."""
 
@@ -46,11 +47,17 @@ class Answer(NamedTuple):
     printed: str = ""
 
 
+Leg: TypeAlias = tuple[Place, Place]
 Verify: TypeAlias = Callable[[Place, Place, dict[str, Any]], object]
 
 
 class BadRuleError(Exception):
     """The file is no rule: `file:line: what is wrong`."""
+
+
+def legs_of(legs_enu: Iterable[tuple[Iterable[float], Iterable[float]]]) -> list[Leg]:
+    """Each with its two ends as places."""
+    return [(Place(*start), Place(*goal)) for start, goal in legs_enu]
 
 
 def load(path: str, source: str) -> Verify:
@@ -69,18 +76,23 @@ def load(path: str, source: str) -> Verify:
     return found
 
 
-def judge(verify: Verify, path: str, start: Place, goal: Place, policy: dict[str, Any]) -> Answer:
-    """The rule's answer to one question; an exception, or anything but a sentence, refuses."""
+def judge(verify: Verify, path: str, legs: Sequence[Leg], policy: dict[str, Any]) -> Answer:
+    """The rule's answer to one question, the first leg that it does not permit; an exception, or
+    anything but a sentence, refuses."""
     printed = io.StringIO()
     failed, refusal = False, None
     try:
         with _limited(), contextlib.redirect_stdout(printed):
-            said = verify(start, goal, policy)
+            answers = (verify(start, goal, policy) for start, goal in legs)
+            number, said = next(
+                (one for one in enumerate(answers, 1) if one[1] is not None), (0, None)
+            )
         if said is not None:
             failed = not (isinstance(said, str) and said.strip())
             name = PurePath(path).name
             wrong = f"{name}: verify returned {said!r}, neither None nor a sentence"
-            refusal = wrong if failed else str(said)
+            which = f"leg {number} of {len(legs)}: " if len(legs) > 1 else ""
+            refusal = wrong if failed else f"{which}{said}"
     except BaseException as error:  # noqa: BLE001 - whatever it raises, SystemExit too, refuses
         failed, refusal = True, _where(error, path, PurePath(path).name)
     shortened = None if refusal is None else " ".join(refusal.split())[:MOST_LETTERS]
@@ -142,8 +154,7 @@ def main() -> None:
     answer({"wrong": ""})
     for line in sys.stdin:
         asked = json.loads(line)
-        start, goal = Place(*asked["start_enu"]), Place(*asked["goal_enu"])
-        said = judge(verify, path, start, goal, policy)
+        said = judge(verify, path, legs_of(asked["legs_enu"]), policy)
         answer({"request_id": asked["request_id"], **said._asdict()})
 
 

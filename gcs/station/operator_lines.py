@@ -23,6 +23,7 @@ from gcs.station.fleet.separation import Separation
 from gcs.station.operators import Operators
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.gate_port import NOT_FLYING
+from gcs.vehicle.own_rule import is_asked_for
 from gcs.vehicle.vehicle import Vehicle
 
 
@@ -99,6 +100,8 @@ def _why_not(
         refusal = vehicles.why_unnamed(asked=asked)
     if refusal is None and bridge is not None and vehicle.telemetry is not None:
         refusal = bridge.armings.why_not(command, vehicle.sysid)
+    if refusal is None and isinstance(command, ipc.Stream) and vehicle.rule is not None:
+        return vehicle.rule.no_legs
     return refusal
 
 
@@ -147,7 +150,7 @@ def _checked(
     if near is not None:
         return announcements.checked(ask, near, goal)
     verdict = gate.would(request, source_of(operator), now_ns)
-    if vehicle.rule is not None and isinstance(request, GoTo) and verdict and not verdict.refusal:
+    if vehicle.rule is not None and is_asked_for(request) and verdict and not verdict.refusal:
         verdict = None  # the operator's own rule is asked first, and only once it is sent
     return announcements.checked(ask, verdict, goal)
 

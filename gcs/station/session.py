@@ -327,7 +327,7 @@ class Session:
             case FileRead() | FileWritten():
                 return self._vehicles.each(lambda each: each.file(given, now_ns))
             case RuleSaid():
-                return self._vehicles.each(lambda each: each.rule.said(given) if each.rule else [])
+                return self._vehicles.each(lambda each: each.rule_said(given))
             case RecorderChanged():
                 return self._recorder(given)
             case RecorderGrew(size_bytes, free_bytes):

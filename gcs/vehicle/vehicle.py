@@ -13,6 +13,7 @@ from gcs.config import StationConfig
 from gcs.frames import Vec3
 from gcs.gate import effects, inputs
 from gcs.gate.airspace.pace import why_not_speed
+from gcs.gate.airspace.separation import Leg
 from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind
 from gcs.gate.machine.could import why_not_go_to, why_not_resume
@@ -25,7 +26,7 @@ from gcs.protocol.effects import Address, Send
 from gcs.report import MissionItem, SetpointItem
 from gcs.session import announcements
 from gcs.session.effects import Record
-from gcs.session.inputs import FileRead, FileWritten
+from gcs.session.inputs import FileRead, FileWritten, RuleSaid
 from gcs.session.speedup_waits import Times
 from gcs.session.work import (
     GATE_ANSWERED,
@@ -50,6 +51,7 @@ from gcs.vehicle.setpoints import attitude_target, setpoint
 from gcs.vehicle.snapshot import lost_pct
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.talk.vehicle_texts import logged
+from gcs.vehicle.ways import legs_asked
 from gcs.wire import messages as m
 from gcs.wire.ids import MissionType
 from gcs.wire.messages import CommandLong
@@ -292,20 +294,36 @@ class Vehicle(VehicleParts):
     # --------------------------------------------------------------------------------- gate
 
     def ask_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
-        """What its gate answers, and what else follows for the vehicle from such an input; a go-to
-        is for the operator's own rule first, where there is one."""
+        """What its gate answers, and what else follows for the vehicle from such an input; what
+        leads somewhere is for the operator's own rule first, where there is one."""
         if self.rule is None:
             return self._asked_gate(given, now_ns)
         kept = self.rule.keeps(given, self.gate, now_ns)
         if kept is not None:
-            return [*kept, GATE_ANSWERED]
+            return [*self._ruled(kept), GATE_ANSWERED]
         work: list[Work] = []
         if isinstance(given, inputs.Tick):
-            permitted, work = self.rule.tick(self.gate, now_ns)
+            permitted, ruled = self.rule.tick(self.gate, self._legs_of, now_ns)
+            work += self._ruled(ruled)
             if permitted is not None:
                 asked = self._asked_gate(permitted, now_ns)
                 work += [each for each in asked if each is not GATE_ANSWERED]
-        return [*work, *self._asked_gate(given, now_ns), *self.rule.after(self.gate)]
+        work += self._asked_gate(given, now_ns)
+        return work + self._ruled(self.rule.after(self.gate))
+
+    def rule_said(self, given: RuleSaid) -> list[Work]:
+        """The answer of the operator's own rule; it may be another vehicle's."""
+        return [] if self.rule is None else self._ruled(self.rule.said(given))
+
+    def _ruled(self, work: list[Work]) -> list[Work]:
+        """An orbit that the rule refuses is not flown."""
+        for each in work:
+            if isinstance(each, GiveVerdict):
+                self.orbits.refused(each.request_id)
+        return work
+
+    def _legs_of(self, requested: inputs.Requested, pos_ned: Vec3) -> list[Leg]:
+        return legs_asked(self, requested.request_id, requested.request, pos_ned)
 
     def _asked_gate(self, given: inputs.Input, now_ns: int) -> list[Work]:
         gate = self.port.gate

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import msgspec
 import pytest
 
@@ -10,38 +13,51 @@ from gcs.audit.audit import audit
 from gcs.frames import Vec3
 from gcs.gate.policy.policy import Policy
 from gcs.gate.states import State
+from gcs.report import MissionItem
 from gcs.session import inputs
 from gcs.session.effects import AskRule
-from tests.loopback.flight import CONFIG, POLICIES, Flight
+from tests.loopback.flight import CONFIG, MISSIONS, POLICIES, Flight
 from tests.loopback.recorded_flights import flights_recorded
 
 RULED = msgspec.structs.replace(CONFIG, rule_path="somewhere/my_rule.py")
 TOO_LOW = "lower than 0.9 m"
 
 
-def verify(goal_enu: Vec3) -> str | None:
+Legs = tuple[tuple[Vec3, Vec3], ...]
+
+
+def verify(legs_enu: Legs) -> str | None:
     """The rule of these flights."""
-    return TOO_LOW if goal_enu[2] < 0.9 else None
+    return TOO_LOW if any(end[2] < 0.9 for _, end in legs_enu) else None
 
 
-def ruled() -> tuple[Flight, list[AskRule]]:
-    """Hovering in the lab's cage; and the questions that its rule is asked and answers."""
-    flight, asked = Flight(policy=POLICIES["lab"], config=RULED), list[AskRule]()
+def asked_of(flight: Flight, verify: Callable[[Legs], str | None] = verify) -> list[AskRule]:
+    """The questions that the rule of a flight is asked and answers from now on."""
+    asked = list[AskRule]()
 
     def rule(question: AskRule) -> list[inputs.Input]:
         asked.append(question)
-        return [inputs.RuleSaid(question.request_id, verify(question.goal_enu))]
+        return [inputs.RuleSaid(question.request_id, verify(question.legs_enu))]
 
     flight.rule = rule
-    return flight.hovering(1.0), asked
+    return asked
+
+
+def ruled() -> tuple[Flight, list[AskRule]]:
+    """Hovering in the lab's cage; and the questions from then on."""
+    flight = Flight(policy=POLICIES["lab"], config=RULED)
+    asked_of(flight)
+    flight.hovering(1.0)
+    return flight, asked_of(flight)
 
 
 def test_what_it_permits_is_judged_by_the_gate_and_flown() -> None:
     flight, asked = ruled()
     began_ns = flight.now_ns
     assert flight.done(flight.goto(2.0, 0.0, 1.0)) == "complete"
-    assert [each.goal_enu for each in asked] == [(2.0, 0.0, 1.0)]
-    assert asked[0].start_enu == pytest.approx((0.0, 0.0, 1.0), abs=0.5)
+    (((start_enu, goal_enu),),) = [each.legs_enu for each in asked]
+    assert goal_enu == (2.0, 0.0, 1.0)
+    assert start_enu == pytest.approx((0.0, 0.0, 1.0), abs=0.5)
     assert flight.states(began_ns) == ["VERIFYING", "MOVING", "HOVERING"]
 
 
@@ -73,6 +89,64 @@ def test_a_rule_that_permits_everything_changes_no_verdict() -> None:
     for goal_enu in ((2.0, 0.0, 1.0), (5.01, 0.0, 1.0), (0.0, 0.0, 2.5), (-1.0, 4.9, 0.5)):
         without, within = free.goto(*goal_enu), under.goto(*goal_enu)
         assert free.done(without) == under.done(within)
+
+
+def test_a_take_off_is_one_leg_up() -> None:
+    flight = Flight(policy=POLICIES["lab"], config=RULED).connected()
+    asked = asked_of(flight)
+    flight.do("arm")
+    assert flight.done(flight.say("takeoff", up_m=0.6)) == "refused OWN_RULE"
+    assert flight.state is State.GROUNDED
+    flight.do("takeoff", up_m=1.2)
+    assert [each.legs_enu[0][1][2] for each in asked] == pytest.approx([0.6, 1.2], abs=0.1)
+
+
+def test_of_a_mission_an_orbit_and_a_return_it_is_asked_every_leg() -> None:
+    """In the lab's cage the gate refuses a return, so these are in the open."""
+    flight = Flight(config=RULED)
+    asked_of(flight, lambda _: None)
+    flight.hovering(5.0)
+    flight.do("mission_upload", path=str(MISSIONS / "square.toml"))
+    asked, began_ns = asked_of(flight, lambda _: "no"), flight.now_ns
+    for word, mode in (("mission_start", ""), ("rtl", ""), ("mode", "AUTO.RTL")):
+        assert flight.done(flight.say(word, mode=mode)) == "refused OWN_RULE"
+    orbit_ask = flight.last_id = flight.last_id + 1
+    circle = ipc.Circle(None, 8.0, 2.0, 1.0)
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(orbit_ask, "orbit", orbit=circle)))
+    assert flight.done(orbit_ask) == "refused OWN_RULE"
+    mission, home, by_mode, orbit = (each.legs_enu for each in asked)
+    flown = next(i for _, i in flight.records if isinstance(i, MissionItem))
+    assert len(mission) >= len(flown.path_ned) - 1
+    assert home[-1][1] == pytest.approx((0.0, 0.0, 0.0), abs=0.5)
+    assert [len(home), len(by_mode)] == [3, 3]
+    assert len(orbit) > 12
+    assert all(math.dist(start, end) < 3.0 for start, end in orbit[1:])
+    assert flight.states(began_ns) == []
+    flight.rule = lambda _: []
+    stopped = flight.say("rtl")
+    flight.run(0.1)
+    flight.do("abort")
+    assert flight.outcome(stopped) == "superseded SUPERSEDED"
+    asked_of(flight, lambda _: None)
+    flight.do("resume")
+    flight.feed(inputs.OperatorLine(1, ipc.Ask(orbit_ask + 9, "orbit", orbit=circle)))
+    flight.until(lambda: flight.is_in(State.STREAMING))
+    flight.run(2.0)
+    assert flight.is_in(State.STREAMING), "the orbit's own samples are no stream of an operator"
+    assert flight.done(flight.say("rtl")) == "complete"
+
+
+def test_a_stream_has_no_legs_and_is_refused_and_stops_are_never_asked_for() -> None:
+    flight, asked = ruled()
+    assert flight.done(flight.say("stream_begin")) == "refused OWN_RULE"
+    for _ in range(20):
+        flight.feed(inputs.OperatorLine(1, ipc.Stream(v_enu=(1.0, 0.0, 0.0))))
+        flight.run(0.05)
+    assert [each.code for each in flight.of(ipc.StreamVerdictEvent)] == ["OWN_RULE"]
+    assert flight.state is State.HOVERING
+    for word in ("hold", "resume", "abort", "land"):
+        flight.do(word)
+    assert asked == []
 
 
 def test_no_answer_refuses_and_a_late_one_is_for_nobody() -> None:
@@ -113,7 +187,7 @@ def test_a_newer_goal_supersedes_the_one_that_waits() -> None:
     first, second = flight.goto(1.0, 0.0, 1.0), flight.goto(2.0, 0.0, 1.0)
     assert flight.done(second) == "complete"
     assert flight.outcome(first) == "superseded SUPERSEDED"
-    assert [each.goal_enu[0] for each in asked] == [2.0]
+    assert [each.legs_enu[0][1][0] for each in asked] == [2.0]
 
 
 def test_a_check_tells_that_the_rule_is_still_to_be_asked() -> None:
@@ -134,14 +208,14 @@ def test_an_audit_takes_its_answers_from_the_record_and_asks_it_again_if_told_to
 
     alone = audit(messages, attached, "test", "")
     assert alone.good
-    assert any("on requests 3, 4 were taken from the record" in note for note in alone.notes)
+    assert any("on requests 2, 3, 4 were taken from the record" in note for note in alone.notes)
 
-    def same(_start: Vec3, goal_enu: Vec3, _policy: Policy) -> tuple[str | None, bool]:
-        return verify(goal_enu), False
+    def same(legs_enu: Legs, _policy: Policy) -> tuple[str | None, bool]:
+        return verify(legs_enu), False
 
     again = audit(messages, attached, "test", "", same)
     assert again.good
-    assert any("asked again on requests 3, 4" in note for note in again.notes)
+    assert any("asked again on requests 2, 3, 4" in note for note in again.notes)
 
     laxer = audit(messages, attached, "test", "", lambda *_: (None, False))
     assert [(each.recorded, each.reproduced) for each in laxer.first] == [(TOO_LOW, "permits")]

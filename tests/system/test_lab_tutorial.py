@@ -167,5 +167,5 @@ def test_the_solution_of_the_rule(asked: tuple[tuple[float, ...], tuple[float, .
     path = policy_path("lab")
     policy = rule_policy(parse_policy(path.read_text(encoding="utf-8"), str(path)))
     verify = load(str(SOLUTION), SOLUTION.read_text(encoding="utf-8"))
-    answer = judge(verify, str(SOLUTION), Place(*start), Place(*goal), policy)
+    answer = judge(verify, str(SOLUTION), [(Place(*start), Place(*goal))], policy)
     assert (answer.refusal, answer.failed) == (refusal, False)

@@ -96,7 +96,7 @@ def usual_timeout_s() -> float:
     default="",
     metavar="FILE",
     help="Your own rule, in Python: verify(start, goal, policy) returns None, or a sentence that "
-    "refuses. Asked for every go-to that the gate would accept; see missions/lab3.",
+    "refuses. Asked for every leg that the gate would let be flown; see missions/lab3.",
 )
 @click.option("--plain", is_flag=True, help="Read words from standard input, line by line.")
 @click.option("--json", "as_json", is_flag=True, help="--plain: print the link's events as JSON.")

@@ -98,7 +98,7 @@ def audit(
 
 def _own_rule(path: str) -> OwnRule:
     """The auditor's own file, loaded; never one that a record brings along."""
-    from gcs.shell.rule_child import BadRuleError, Place, judge, load
+    from gcs.shell.rule_child import BadRuleError, judge, legs_of, load
     from gcs.shell.rule_process import rule_policy
 
     try:
@@ -109,9 +109,8 @@ def _own_rule(path: str) -> OwnRule:
         text = f"{path}: {getattr(error, 'strerror', None) or error}"
         raise ExitError(ExitCode.BAD_FILE, text) from error
 
-    def rule(start_enu: Vec3, goal_enu: Vec3, policy: Policy) -> tuple[str | None, bool]:
-        start, goal = Place(*start_enu), Place(*goal_enu)
-        answer = judge(verify, path, start, goal, rule_policy(policy))
+    def rule(legs_enu: tuple[tuple[Vec3, Vec3], ...], policy: Policy) -> tuple[str | None, bool]:
+        answer = judge(verify, path, legs_of(legs_enu), rule_policy(policy))
         return answer.refusal, answer.failed
 
     return rule

@@ -31,10 +31,10 @@ from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import BeginStream, GoTo, Request, StartMission, TakeOff
 from gcs.session.work import ForOwner, Work, condition
 from gcs.station.fleet.neighbours import into_frame_of
-from gcs.station.fleet.ways import legs_asked, legs_of
 from gcs.station.vehicles import Vehicles
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
+from gcs.vehicle.ways import legs_asked, legs_of
 
 LESS_M: Final = 0.1
 """Vehicles that are too close already may fly where they come no nearer than that."""

@@ -38,7 +38,7 @@ def source(body: str) -> str:
 @each("body", ANSWERS)
 def test_what_it_returns_or_raises(body: str) -> None:
     verify = load("a/r.py", source(body))
-    assert judge(verify, "a/r.py", START, GOAL, rule_policy(DEFAULT)) == ANSWERS[body]
+    assert judge(verify, "a/r.py", [(START, GOAL)], rule_policy(DEFAULT)) == ANSWERS[body]
 
 
 def test_a_file_that_is_no_rule_says_where() -> None:
@@ -68,10 +68,10 @@ def answers(rule: RuleProcess) -> list[RuleSaid]:
 def test_its_process_answers_one_question_after_the_other() -> None:
     rule = RuleProcess("r.py", source("return None if goal.up_m > 1 else 'low'"), DEFAULT)
     try:
-        rule.ask(AskRule(7, START, GOAL))
+        rule.ask(AskRule(7, ((START, GOAL),)))
         assert answers(rule) == [RuleSaid(7, None)]
-        rule.ask(AskRule(8, START, (0.0, 0.0, 0.5)))
-        assert answers(rule) == [RuleSaid(8, "low")]
+        rule.ask(AskRule(8, ((START, GOAL), (GOAL, (0.0, 0.0, 0.5)))))
+        assert answers(rule) == [RuleSaid(8, "leg 2 of 2: low")]
     finally:
         rule.stop()
 
@@ -81,10 +81,10 @@ def test_its_process_answers_one_question_after_the_other() -> None:
 def test_a_process_that_ends_at_a_question_or_has_to_be_ended(body: str) -> None:
     rule = RuleProcess("r.py", source(body), DEFAULT)
     try:
-        rule.ask(AskRule(1, START, GOAL))
+        rule.ask(AskRule(1, ((START, GOAL),)))
         while not rule.lines.ended:
             assert answers(rule) == []
-        rule.ask(AskRule(2, START, GOAL))  # says nothing, and raises nothing
+        rule.ask(AskRule(2, ((START, GOAL),)))  # says nothing, and raises nothing
     finally:
         rule.stop()
 

@@ -11,34 +11,44 @@ from gcs.frames import Vec3
 from gcs.gate.airspace.questions.returns import way_home
 from gcs.gate.airspace.separation import Leg
 from gcs.gate.machine.memory import Memory
-from gcs.gate.requests import BeginStream, GoTo, Request, StartMission, TakeOff
-from gcs.gate.states import State
+from gcs.gate.requests import (
+    BeginStream,
+    GoTo,
+    Request,
+    ReturnHome,
+    SetMode,
+    StartMission,
+    TakeOff,
+)
+from gcs.gate.states import FlightMode, State
 from gcs.orbit.circle import Orbit
 from gcs.vehicle.gate_port import NOT_FLYING
-from gcs.vehicle.vehicle import Vehicle
+from gcs.vehicle.parts import VehicleParts
 
 CHORD_OFF_M: Final = 0.1
 """How far a circle may lie beside the legs that stand for it."""
 
 
-def legs_of(vehicle: Vehicle, pos_ned: Vec3) -> list[Leg]:
+def legs_of(vehicle: VehicleParts, pos_ned: Vec3) -> list[Leg]:
     """To a goal that waits for its tick, to the goal, up a climb, down a landing, round an orbit,
     along all of a mission, to each place where a return may end; else only where it is or hovers.
     """
-    memory = vehicle.gate.memory
+    memory = vehicle.port.gate.memory
     if memory.state is State.STREAMING and vehicle.orbits.flown is not None:
         return _round(vehicle.orbits.flown.guidance.orbit, pos_ned)
     if memory.state is State.FLYING_MISSION and vehicle.missions.legs_ned:
         return [(pos_ned, pos_ned), *vehicle.missions.legs_ned]
     if memory.state is State.RETURNING and memory.return_up_m is not None:
-        return [leg for way in _home(memory, pos_ned, memory.return_up_m) for leg in pairwise(way)]
+        return _home(memory, pos_ned, memory.return_up_m) or [(pos_ned, pos_ned)]
     return [(pos_ned, _end_of(memory, pos_ned))]
 
 
-def legs_asked(vehicle: Vehicle, request_id: int, request: Request, pos_ned: Vec3) -> list[Leg]:
-    """What it would fly by a request for a goal, a climb, an orbit or a mission; none where the
-    gate refuses that in any case."""
-    memory = vehicle.gate.memory
+def legs_asked(
+    vehicle: VehicleParts, request_id: int, request: Request, pos_ned: Vec3
+) -> list[Leg]:
+    """What it would fly by a request for a goal, a climb, an orbit, a mission or a return; none
+    where the gate refuses that in any case, and by a stream, whose samples come later."""
+    memory = vehicle.port.gate.memory
     match request:
         case GoTo(goal_ned) if memory.state not in NOT_FLYING:
             return [(pos_ned, goal_ned)]
@@ -50,6 +60,8 @@ def legs_asked(vehicle: Vehicle, request_id: int, request: Request, pos_ned: Vec
             return _round(orbit, pos_ned)
         case StartMission() if memory.state in (State.GROUNDED, State.HOVERING):
             return [*vehicle.missions.legs_ned]
+        case ReturnHome() | SetMode(meaning=FlightMode.RETURN) if memory.return_up_m is not None:
+            return _home(memory, pos_ned, memory.return_up_m)
     return []
 
 
@@ -75,9 +87,10 @@ def _round(orbit: Orbit, pos_ned: Vec3) -> list[Leg]:
     return [(pos_ned, nearest), *pairwise(circle)]
 
 
-def _home(memory: Memory, pos_ned: Vec3, return_up_m: float) -> list[tuple[Vec3, ...]]:
-    ways: list[tuple[Vec3, ...]] = []
+def _home(memory: Memory, pos_ned: Vec3, return_up_m: float) -> list[Leg]:
+    """To each place where it may end."""
+    legs: list[Leg] = []
     for to in memory.returns_to:
         top_ned, over_ned = way_home(pos_ned, to.ground_ned, max(return_up_m, to.over_up_m))
-        ways.append((pos_ned, top_ned, over_ned, to.ground_ned))
-    return ways or [(pos_ned, pos_ned)]
+        legs += pairwise((pos_ned, top_ned, over_ned, to.ground_ned))
+    return legs
