@@ -103,7 +103,7 @@ def _of_running(found: Description, address: tuple[str, int], allow: tuple[str, 
 
 def _of_new(config: StationConfig, address: tuple[str, int], allow: tuple[str, ...]) -> int:
     """A station without a screen, until a Ctrl-C: its log goes to standard error."""
-    from gcs.cli.live_option import open_beside
+    from gcs.cli.live_option import LiveView, open_beside
     from gcs.exit_codes import ExitCode
     from gcs.operator.client import StationClient
     from gcs.operator.dialogue import Dialogue
@@ -113,7 +113,7 @@ def _of_new(config: StationConfig, address: tuple[str, int], allow: tuple[str, .
 
     with Interrupts() as interrupts:
         station = StationClient.start(config)
-        open_beside(station, address, click.echo, allow)
+        open_beside(station, LiveView(*address, allow), click.echo)
         dialogue = Dialogue(station, interrupts, lambda event, _: _print_log(event))
         try:
             dialogue.wait_until(lambda: False)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ipaddress
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -50,20 +50,38 @@ LIVE = click.Option(
     metavar="[HOST:PORT]",
     help=f"Serve the flight to viewers such as Foxglove while it is flown: {ADDRESS_HELP}",
 )
+ALLOW = click.Option(
+    ["--allow"],
+    multiple=True,
+    metavar="PAGE|NAME",
+    help="--live: let this page, or this name of our machine, in too; see gcs live.",
+)
+
+
+class LiveView(NamedTuple):
+    """Where a live view is wanted, and who is let in beside the usual ones."""
+
+    host: str
+    port: int
+    allow: tuple[str, ...] = ()
+
+
+def live_view(address: tuple[str, int] | None, allow: tuple[str, ...]) -> LiveView | None:
+    """What `LIVE` and `ALLOW` say together."""
+    if address is None and allow:
+        raise click.UsageError("--allow is for the viewers of a live view: give --live, too")
+    return None if address is None else LiveView(*address, allow)
 
 
 def open_beside(
-    station: StationClient,
-    address: tuple[str, int] | None,
-    echo: Callable[[str], None],
-    allow: Sequence[str] = (),
+    station: StationClient, view: LiveView | None, echo: Callable[[str], None]
 ) -> list[str]:
     """Open a live view of a station that was just started, if one is wanted; what was told of it.
 
     Raises ExitError if there can be none; then the station is ended, too.  That a station has ended
     meanwhile, it tells itself.
     """
-    if address is None:
+    if view is None:
         return []
     from gcs import ipc
     from gcs.live.program import Wanted, check_installed, opened_by
@@ -71,12 +89,13 @@ def open_beside(
 
     try:
         check_installed()
-        opened = opened_by(Wanted(station.pid, *address, [*allow]), lambda: station.running)
+        wanted = Wanted(station.pid, view.host, view.port, [*view.allow])
+        opened = opened_by(wanted, lambda: station.running)
     except ExitError:
         station.send(ipc.Leave("there is no live view"))
         station.close()
         raise
-    lines = lines_about(opened, address[0]) if opened is not None else []
+    lines = lines_about(opened, view.host) if opened is not None else []
     for line in lines:
         echo(line)
     return lines

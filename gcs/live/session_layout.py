@@ -1,14 +1,17 @@
 """The file with the layout of this live view, beside the record, for as long as it serves.
 
 It is written anew when a vehicle comes or the fence changes.  It holds the control code, so that
-only its user can read it, and it goes with the live view: then the code is worth nothing.
+only its user can read it, and it goes with the live view: then the code is worth nothing.  What a
+live view that was killed has left, the next one takes away.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from gcs import ipc
@@ -18,6 +21,18 @@ from gcs.record.viewer.live_layout import live_layout
 from gcs.report import FenceItem
 
 _VEHICLE = re.compile(r"/vehicle/(\d+)/")
+_LAYOUT = re.compile(r"(\d{8}-\d{6}_.+)_viewer-\d{1,5}\.json(\.new)?")
+_PART = re.compile(r"_part\d+$")
+
+
+def remove_left(folder: Path, running: Iterable[str]) -> None:
+    """Layouts of sessions that are over: `running` are the records of those that are not."""
+    sessions = {_PART.sub("", Path(log_path).stem) for log_path in running}
+    for file in folder.glob("*_viewer-*.json*"):
+        found = _LAYOUT.fullmatch(file.name)
+        if found is not None and _PART.sub("", found[1]) not in sessions:
+            with contextlib.suppress(OSError):
+                file.unlink()
 
 
 class SessionLayout:

@@ -16,6 +16,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 from gcs import ipc
@@ -26,11 +27,11 @@ from gcs.live.connections import Connections, Event, PortTakenError, Refused
 from gcs.live.effects import Close, Effect, Frame, Join, Notice, Reply, Send, Values
 from gcs.live.inputs import Ended, Input, Tick, Told
 from gcs.live.server import Server, ServerInput
-from gcs.live.session_layout import SessionLayout
+from gcs.live.session_layout import SessionLayout, remove_left
 from gcs.live.viewers import LOOKING, Viewers
 from gcs.operator.client import StationEnded, StationEvent
 from gcs.operator.errors import ExitError
-from gcs.operator.joined import JoinedStation
+from gcs.operator.joined import JoinedStation, running_stations
 from gcs.shell.stations import Description
 
 TICK_S = 0.25
@@ -97,6 +98,9 @@ class LiveView:
             self._looking.close_at_once()
             raise
         port = self.url.rpartition(":")[2]
+        if described.log_path:
+            running = [described.log_path, *(each.log_path for each in running_stations())]
+            remove_left(Path(described.log_path).parent, running)
         self.layout = SessionLayout(described.log_path, port, self.code)
 
     def run(self, interrupt: Interrupt | None = None) -> StationEnded | None:

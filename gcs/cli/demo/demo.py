@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gcs.cli.live_option import LIVE, open_beside
+from gcs.cli.live_option import ALLOW, LIVE, live_view, open_beside
 from gcs.cli.options import LOG_DIR, TIMEOUT, with_options
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
@@ -35,13 +35,14 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Three vehicles with crossing ways: one of two goals is refused.",
 )
-@with_options(LIVE, LOG_DIR, TIMEOUT)
+@with_options(LIVE, ALLOW, LOG_DIR, TIMEOUT)
 @click.pass_context
 def demo(
     ctx: click.Context,
     autopilot: str,
     fleet: bool,
     live: tuple[str, int] | None,
+    allow: tuple[str, ...],
     log_dir: str,
     timeout: float,
 ) -> None:
@@ -53,12 +54,13 @@ def demo(
     from gcs.operator.client import StationClient
     from gcs.operator.interrupts import Interrupts
 
+    view = live_view(live, allow)
     config = (fleet_config if fleet else station_config)(autopilot, log_dir, timeout)
     mission_path = str(resources.find(MISSION))
     with Interrupts() as interrupts:
         station = StationClient.start(config)
         console = Console(highlight=False)
-        open_beside(station, live, lambda line: console.print(line, markup=False))
+        open_beside(station, view, lambda line: console.print(line, markup=False))
         ctx.exit(run_over(station, interrupts, console, mission_path, timeout, fleet=fleet))
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Unpack
 import click
 
 from gcs.cli import completers
-from gcs.cli.live_option import LIVE, open_beside
+from gcs.cli.live_option import ALLOW, LIVE, LiveView, live_view, open_beside
 from gcs.cli.options import (
     ASCII,
     LINK,
@@ -89,7 +89,7 @@ def usual_timeout_s() -> float:
 @click.option(
     "--keep", is_flag=True, help="The link lives on when this operator leaves; see gcs stations."
 )
-@with_options(LIVE)
+@with_options(LIVE, ALLOW)
 @click.option(
     "--verifier",
     type=UTF8,
@@ -112,6 +112,7 @@ def fly(
     keep: bool,
     mission: str,
     live: tuple[str, int] | None,
+    allow: tuple[str, ...],
     verifier: str,
     plain: bool,
     as_json: bool,
@@ -126,6 +127,7 @@ def fly(
 
     if of["sim"] and vehicle is not None:
         raise click.UsageError("--sim starts a vehicle of its own: leave out --vehicle")
+    view = live_view(live, allow)
     config = new_station(
         ctx,
         links,
@@ -142,17 +144,17 @@ def fly(
     mission_path = _mission(mission) if mission else ""
     if plain:
         level = log_level(2, quiet=quiet, verbose=verbose)
-        ctx.exit(_fly_plain(config, live, min_level=level, as_json=as_json, strict=strict))
+        ctx.exit(_fly_plain(config, view, min_level=level, as_json=as_json, strict=strict))
     ctx.exit(
         _fly_keyboard(
-            config, live, timeout, mission_path, configured_keymap(), ascii_only=ascii_only
+            config, view, timeout, mission_path, configured_keymap(), ascii_only=ascii_only
         )
     )
 
 
 def _fly_plain(
     config: StationConfig,
-    live: tuple[str, int] | None,
+    view: LiveView | None,
     *,
     min_level: int,
     as_json: bool,
@@ -173,7 +175,7 @@ def _fly_plain(
     )
     with Interrupts() as interrupts:
         station = StationClient.start(config)
-        open_beside(station, live, to_stderr)
+        open_beside(station, view, to_stderr)
         return Plain(station, interrupts, how, to_stdout, to_stderr).run(stdin_input())
 
 
@@ -201,7 +203,7 @@ def needs_a_terminal() -> None:
 
 def _fly_keyboard(
     config: StationConfig,
-    live: tuple[str, int] | None,
+    view: LiveView | None,
     timeout_s: float | None,
     mission_path: str,
     keymap: Keymap,
@@ -225,7 +227,7 @@ def _fly_keyboard(
         except Interrupted:
             click.echo("gcs: interrupted", err=True)
             return ExitCode.INTERRUPTED
-        told = open_beside(station, live, lambda line: click.echo(line, err=True))
+        told = open_beside(station, view, lambda line: click.echo(line, err=True))
         events += [ipc.LogEvent(0, Level.INFO, "live", line.strip()) for line in told]
     app = FlyApp(
         station,

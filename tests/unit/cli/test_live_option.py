@@ -6,7 +6,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from gcs.cli.live_option import ADDRESS, LIVE, lines_about
+from gcs.cli.live_option import ADDRESS, ALLOW, LIVE, LiveView, lines_about, live_view
 from gcs.cli.options import with_options
 from gcs.live.program import Opened
 
@@ -47,16 +47,27 @@ def test_no_address(text: str) -> None:
 def test_the_option_takes_an_address_or_none(
     words: list[str], address: tuple[str, int] | None
 ) -> None:
+    assert viewed(words) == (0, [address and LiveView(*address)])
+
+
+def viewed(words: list[str]) -> tuple[int, list[LiveView | None]]:
+    """The exit code of a command with these words, and the live view that it was to open."""
     seen = []
 
     @click.command()
-    @with_options(LIVE)
+    @with_options(LIVE, ALLOW)
     @click.option("--other", is_flag=True)
-    def command(live: tuple[str, int] | None, other: bool) -> None:
-        seen.append(live)
+    def command(live: tuple[str, int] | None, allow: tuple[str, ...], other: bool) -> None:
+        seen.append(live_view(live, allow))
 
-    assert CliRunner().invoke(command, words).exit_code == 0
-    assert seen == [address]
+    return CliRunner().invoke(command, words).exit_code, seen
+
+
+def test_who_is_let_in_too_is_said_with_a_live_view() -> None:
+    allow = ["--allow", "https://viewer.example", "--allow", "station.lan"]
+    let_in = ("https://viewer.example", "station.lan")
+    assert viewed(["--live", *allow]) == (0, [LiveView("127.0.0.1", 0, let_in)])
+    assert viewed(allow) == (2, [])
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from gcs import ipc
-from gcs.live.session_layout import SessionLayout
+from gcs.live.session_layout import SessionLayout, remove_left
 from gcs.record.fence_topic import written as written_fence
 from gcs.report import FenceItem, FenceShape
 
@@ -36,6 +36,21 @@ def test_it_stands_beside_the_record_and_follows_vehicles_and_fence(tmp_path: Pa
         assert path.stat().st_mode & 0o077 == 0  # it holds the code
     layout.remove()
     assert not [*tmp_path.iterdir()]
+
+
+def test_what_a_killed_view_has_left_goes_once_its_session_is_over(tmp_path: Path) -> None:
+    over = ["20260101-000000_a_viewer-8765.json", "20260101-000000_a_viewer-8766.json.new"]
+    stays = [
+        "20260101-000001_b_viewer-8765.json",
+        "20260101-000002_c_part3_viewer-8765.json",
+        "20260101-000000_a.mcap",
+        "mine_viewer-8765.json",
+    ]
+    for name in (*over, *stays):
+        (tmp_path / name).touch()
+    running = ["20260101-000001_b_part2.mcap", "20260101-000002_c.mcap"]
+    remove_left(tmp_path, (str(tmp_path / name) for name in running))
+    assert sorted(each.name for each in tmp_path.iterdir()) == sorted(stays)
 
 
 def test_where_it_cannot_be_written_it_says_why(tmp_path: Path) -> None:
