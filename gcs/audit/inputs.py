@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final, TypeAlias, cast, get_args
 
 import msgspec
+from msgspec.structs import replace
 
 from gcs.audit.messages import Attachments, Stored
 from gcs.gate.policy.parse import DEFAULT
@@ -54,8 +55,12 @@ def kept_of(kind: str, data: bytes, attachments: Attachments) -> Kept:
     return _file_read(kept, attachments) if isinstance(kept, FileKept) else cast("Kept", kept)
 
 
+_UNTOLD: Final = replace(DEFAULT, arrival=replace(DEFAULT.arrival, yaw_deg=None))
+"""The default, but that no heading is waited for: no version without that key did so."""
+
+
 def start_of(data: bytes) -> Start:
-    """The set-up, with this version's defaults for what another one did not have in its policy.
+    """The set-up, with what another version did for what it did not have in its policy.
 
     Raises msgspec.MsgspecError where it cannot be read.
     """
@@ -68,7 +73,7 @@ def start_of(data: bytes) -> Start:
         setup = tree["setup"]
         if not isinstance(setup, dict):
             raise
-        setup["policy"] = _overlaid(msgspec.to_builtins(DEFAULT), setup.get("policy"))
+        setup["policy"] = _overlaid(msgspec.to_builtins(_UNTOLD), setup.get("policy"))
         return msgspec.convert(tree, Start)
 
 

@@ -76,7 +76,8 @@ class PositionSeen:
 
     `reset` says that the vehicle's clock went backwards or that one of its reset counters
     changed: the origin of the local frame may have moved.  `late_s` is how old the position was
-    when it came: as late is what is sent now.
+    when it came: as late is what is sent now.  `yaw_rad` is where the nose pointed, clockwise from
+    north, by the last ATTITUDE; None where the vehicle has told none of late.
     """
 
     pos_ned: Vec3
@@ -84,6 +85,7 @@ class PositionSeen:
     time_boot_ms: int
     reset: bool = False
     late_s: float = 0.0
+    yaw_rad: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,7 +74,7 @@ def updates(message: m.Message, telemetry: Telemetry, now_ns: int) -> Iterator[U
         case m.LocalPositionNed():
             yield from _local_position(message, telemetry, now_ns)
         case m.Attitude() if _finite(message.roll, message.pitch, message.yaw):
-            telemetry.yaw_rad = message.yaw
+            telemetry.yaw_rad, telemetry.yaw_ns = message.yaw, now_ns
             telemetry.q_ned_from_frd = quat_from_euler(message.roll, message.pitch, message.yaw)
         case m.GlobalPositionInt():
             yield from _global_position(message, telemetry, now_ns)
@@ -138,10 +138,17 @@ def _local_position(
     telemetry.time_boot_ms = message.time_boot_ms
     telemetry.stamps.take(message.time_boot_ms)
     telemetry.pos_ned, telemetry.v_ned, telemetry.position_ns = pos_ned, v_ned, now_ns
+    told_of_late = now_ns - telemetry.yaw_ns <= telemetry.position_age_ns
+    seen = inputs.PositionSeen(
+        pos_ned,
+        v_ned,
+        message.time_boot_ms,
+        restarted,
+        late_ns / 1e9,
+        telemetry.yaw_rad if told_of_late else None,
+    )
     return (
-        GateInput(
-            inputs.PositionSeen(pos_ned, v_ned, message.time_boot_ms, restarted, late_ns / 1e9)
-        ),
+        GateInput(seen),
         Record(PoseItem(telemetry.sysid, pos_ned, v_ned, telemetry.q_ned_from_frd)),
     )
 

@@ -128,6 +128,7 @@ class Flight(Looks):
         self.vehicle_silent = False
         self.positions_lost = False
         self.heartbeats_lost = False
+        self.attitudes_lost = False
         self.last_id = 0
         self._forged = 0
 
@@ -202,6 +203,7 @@ class Flight(Looks):
     def _without_lost(self, data: bytes) -> bytes:
         lost = {"LOCAL_POSITION_NED"} if self.positions_lost else set()
         lost |= {"HEARTBEAT"} if self.heartbeats_lost else set()
+        lost |= {"ATTITUDE"} if self.attitudes_lost else set()
         if not lost:
             return data
         frames = (item for item in split(data) if isinstance(item, Frame))

@@ -17,6 +17,9 @@ from tests.loopback.flight import HOMES, Flight, Personality
 from tests.loopback.observed import START_NS
 
 UP_M = 3.0
+TURNED_DEG = 5.5
+"""[arrival] yaw_deg, and what the nose may sway between two reports."""
+REPLACE = parse_policy('retarget = "replace"', "replace.toml")
 METRES_PER_DEGREE = math.radians(6_371_000.0)
 """Of latitude, on PX4's sphere; ArduPilot's is 0.1 % more."""
 
@@ -63,8 +66,7 @@ def test_forward_is_where_its_nose_points(personality: Personality) -> None:
     """Nose to the east: forward is east, right is south."""
     flight = Flight(personality).hovering(UP_M)
     before = flown(flight, "heading", yaw_deg=90.0)
-    flight.run(5.0)
-    assert nose_deg(flight) == pytest.approx(90.0, abs=3.0)
+    assert nose_deg(flight) == pytest.approx(90.0, abs=TURNED_DEG), "complete when it has turned"
     east, north, up = reported_enu(flight)
     assert (east, north, up) == pytest.approx(before, abs=0.6)
     goal = flown(flight, move_body=(3.0, 1.0, 0.5))
@@ -72,16 +74,26 @@ def test_forward_is_where_its_nose_points(personality: Personality) -> None:
     assert math.dist(goal, (east, north, up)) == pytest.approx(math.hypot(3.0, 1.0, 0.5), abs=1e-4)
 
 
-def test_forward_right_after_a_heading_is_where_the_nose_turns_to(personality: Personality) -> None:
-    """A heading is complete while the nose still turns."""
-    flight = Flight(personality).hovering(UP_M)
-    flown(flight, "heading", yaw_deg=-90.0)
+def test_forward_amid_a_turn_is_where_the_nose_turns_to(personality: Personality) -> None:
+    flight = Flight(personality, policy=REPLACE).hovering(UP_M)
+    turn = asked(flight, "heading", yaw_deg=-90.0)
+    flight.run(0.7)
+    assert abs(nose_deg(flight) - 270.0) > 30.0
     east, north, up = reported_enu(flight)
     assert flown(flight, move_body=(3.0, 0.0, 0.0)) == pytest.approx(
         (east - 3.0, north, up), abs=1e-5
     )
-    flight.run(5.0)
-    assert nose_deg(flight) == pytest.approx(270.0, abs=3.0)
+    assert flight.outcome(turn) == "superseded"
+    assert nose_deg(flight) == pytest.approx(270.0, abs=TURNED_DEG)
+
+
+def test_of_a_vehicle_that_tells_no_heading_the_place_alone_counts() -> None:
+    flight = Flight().hovering(UP_M)
+    flight.attitudes_lost = True
+    flight.run(1.5)
+    number = asked(flight, "heading", yaw_deg=170.0)
+    flight.run(1.0)
+    assert flight.outcome(number) == "complete"
 
 
 def test_a_heading_keeps_the_place_that_it_hovers_at(personality: Personality) -> None:
@@ -93,7 +105,7 @@ def test_a_heading_keeps_the_place_that_it_hovers_at(personality: Personality) -
 
 
 def test_a_heading_on_the_way_keeps_the_goal() -> None:
-    flight = Flight(policy=parse_policy('retarget = "replace"', "replace.toml")).hovering(UP_M)
+    flight = Flight(policy=REPLACE).hovering(UP_M)
     flight.goto(9.0, 0.0, UP_M)
     flight.until(lambda: flight.is_in(State.MOVING), 1.0)
     number = asked(flight, "heading", yaw_deg=90.0)

@@ -60,11 +60,13 @@ from gcs.gate.states import FlightMode, LandedState, State
 from tests.proof.invariants_command import FORCE_WINDOW_NS
 from tests.proof.world import (
     ABOVE,
+    AWAY_YAW_RAD,
     CONDITIONS,
     DASH,
     EDGE,
     ELSEWHERE,
     GOAL,
+    GOAL_YAW_RAD,
     HOME,
     LOW,
     NOWHERE,
@@ -98,7 +100,7 @@ Letter: TypeAlias = Callable[[World, Memory, int], Iterator[Step]]
 
 REQUESTS: Final[Mapping[str, Request]] = MappingProxyType(
     {
-        "goto inside": GoTo(GOAL),
+        "goto inside": GoTo(GOAL, GOAL_YAW_RAD),
         "goto outside": GoTo(OUTSIDE),
         "goto nowhere": GoTo(NOWHERE),
         "control": TakeControl(),
@@ -290,7 +292,7 @@ def _until(
         if told and age_ns is not None and age_ns <= world.policy.position_age_s * SECOND_NS:
             assert memory.pos_ned is not None
             assert memory.v_ned is not None
-            yield 1, PositionSeen(memory.pos_ned, memory.v_ned, 0)
+            yield 1, PositionSeen(memory.pos_ned, memory.v_ned, 0, yaw_rad=memory.yaw_rad)
         yield 1, Tick(0)
 
     return letter
@@ -391,6 +393,9 @@ ALPHABET: Final[Mapping[str, Letter]] = MappingProxyType(
         "tick": _tick,
         "position": _input(PositionSeen(SPOT, STILL, 0)),
         "position at the goal": _input(PositionSeen(GOAL, STILL, 0)),
+        "position at the goal, turned away": _input(
+            PositionSeen(GOAL, STILL, 0, yaw_rad=AWAY_YAW_RAD)
+        ),
         "position at the top": _input(PositionSeen(TOP, STILL, 0)),
         "position short of the top": _input(PositionSeen(LOW, STILL, 0)),
         "position above the top": _input(PositionSeen(ABOVE, STILL, 0)),

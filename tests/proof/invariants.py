@@ -64,6 +64,7 @@ STEP_CHECKS: Final = (
     StepCheck(2, invariants_motion.returns_by_clear_ways, (SendCommand,)),
     StepCheck(2, invariants_motion.climbs_to_its_top, (Tick,)),
     StepCheck(2, invariants_motion.ends_a_climb_at_its_top, (Outcome,)),
+    StepCheck(2, invariants_motion.turns_to_the_heading_asked_for, (Outcome,)),
     StepCheck(3, invariants_request.answers_once),
     StepCheck(3, invariants_request.leaves_no_request_open, (OperatorLost,)),
     StepCheck(4, invariants_request.keeps_nothing_refused, (Verdict,)),

@@ -215,6 +215,26 @@ def ends_a_climb_at_its_top(edge: Edge) -> Iterator[str]:
             yield "a take-off is complete though its top is not reached"
 
 
+def turns_to_the_heading_asked_for(edge: Edge) -> Iterator[str]:
+    """2: a goal with a heading is not complete while the vehicle tells that its nose is elsewhere:
+    whoever goes on from there, or leaves, means that heading."""
+    task, yaw_rad, within_deg = edge.before.task, edge.after.yaw_rad, edge.policy.arrival.yaw_deg
+    asked = None if task is None else task.requested.request
+    if task is None or not isinstance(asked, GoTo) or asked.yaw_rad is None:
+        return
+    complete = any(
+        isinstance(effect, Outcome)
+        and effect.kind is OutcomeKind.COMPLETE
+        and effect.request_id == task.requested.request_id
+        for effect in edge.effects
+    )
+    if not complete or yaw_rad is None or within_deg is None:
+        return
+    turn_rad = math.acos(max(-1.0, min(1.0, math.cos(asked.yaw_rad - yaw_rad))))
+    if math.degrees(turn_rad) > within_deg:
+        yield f"a goal is complete with the nose {math.degrees(turn_rad):.0f} deg off"
+
+
 def brakes_for_a_breach(edge: Edge) -> Iterator[str]:
     """6: a predicted breach is braked in the instant of the sample that predicts it."""
     before, given = edge.before, edge.given

@@ -25,6 +25,9 @@ HOME: Final[Vec3] = (0.0, 0.0, 0.0)
 STILL: Final[Vec3] = (0.0, 0.0, 0.0)
 SPOT: Final[Vec3] = (0.0, 0.0, -5.0)
 GOAL: Final[Vec3] = (3.0, 0.0, -5.0)
+GOAL_YAW_RAD: Final = 3.0
+AWAY_YAW_RAD: Final = -3.0
+"""The heading that is asked for at the goal, and another one, on the other side of south."""
 EDGE: Final[Vec3] = (18.0, 0.0, -5.0)
 DASH: Final[Vec3] = (8.0, 0.0, 0.0)
 TOP: Final[Vec3] = (0.0, 0.0, -10.0)
@@ -60,7 +63,7 @@ YARD: Final = structs.replace(
         ),
     ),
     fence_switchable=True,
-    arrival=Arrival(radius_m=0.5, max_radius_m=0.5, speed_m_s=None, dwell_s=0.0),
+    arrival=Arrival(radius_m=0.5, max_radius_m=0.5, speed_m_s=None, yaw_deg=5.0, dwell_s=0.0),
     jump_speed_m_s=1e12,
     takeoff=structs.replace(DEFAULT.takeoff, max_up_m=20.0),
     severities={condition: CONDITIONS.get(condition, Severity.CAUTION) for condition in Condition},

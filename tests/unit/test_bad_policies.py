@@ -218,6 +218,7 @@ def test_an_odd_polygon_is_taken(corners: str, tmp_path: Path) -> None:
         ('[battery]\nlow_v = "off"', "battery.low_v"),
         ("[battery]\ncritical_v = false", "battery.critical_v"),
         ('[arrival]\nspeed_m_s = "any"', "arrival.speed_m_s"),
+        ("[arrival]\nyaw_deg = true", "arrival.yaw_deg"),
     ],
 )
 def test_where_none_is_a_value_the_hint_says_so(text: str, key: str, tmp_path: Path) -> None:

@@ -78,18 +78,20 @@ def _fly_to(step: StepContext, goal: Goal) -> None:
     memory = step.memory
     assert memory.pos_ned is not None
     memory.goal = goal
-    memory.within_since_ns = step.now_ns if within_arrival(step, goal.pos_ned) else None
+    memory.within_since_ns = step.now_ns if within_arrival(step) else None
     step.set_deadline(_flight_s(step, memory.pos_ned, goal))
 
 
 def _flight_s(step: StepContext, pos_ned: Vec3, goal: Goal) -> float:
-    """Seconds allowed for a goal: the slowest healthy flight there, times the policy's factor."""
+    """Seconds allowed for a goal: the slowest healthy flight there, and the slowest turn, as it may
+    begin where the flight ends; times the policy's factor."""
     speeds, policy, most_m_s = step.policy.speeds, step.policy, goal.speed_m_s
     north_m, east_m, down_m = (to - here for to, here in zip(goal.pos_ned, pos_ned, strict=True))
     level_s = math.hypot(north_m, east_m) / min(speeds.cruise_m_s, most_m_s)
     climb_m_s = speeds.descend_m_s if down_m > 0.0 else speeds.climb_m_s
     climb_s = abs(down_m) / min(climb_m_s, most_m_s)
-    return max(policy.deadline_min_s, policy.deadline_factor * (level_s + climb_s))
+    turn_s = step.memory.turn_left_deg(policy.arrival.yaw_deg) / speeds.turn_deg_s
+    return max(policy.deadline_min_s, policy.deadline_factor * (level_s + climb_s + turn_s))
 
 
 def _refuse_goal(step: StepContext) -> None:

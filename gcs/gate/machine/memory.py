@@ -101,6 +101,7 @@ class Memory:
     pos_ned: Vec3 | None = None
     v_ned: Vec3 | None = None
     pos_ns: int | None = None
+    yaw_rad: float | None = None  # where the nose points; None: not told of late
     late_s: float = 0.0  # how old it was when it came
     boot_ms: int = 0  # the vehicle's own time stamp of the last position
     home_ned: Vec3 | None = None
@@ -124,7 +125,7 @@ class Memory:
     pending: Requested | None = None  # a go-to that waits for the next tick
     hold: Goal | None = None  # where the vehicle hovers
     goal: Goal | None = None  # where the vehicle flies to
-    within_since_ns: int | None = None  # inside the arrival radius of `goal` since then
+    within_since_ns: int | None = None  # at `goal` since then, in place and heading
     paced: Paced | None = None  # what was sent last on the way to a position
     paced_ns: int = 0  # when that was
 
@@ -205,6 +206,16 @@ class Memory:
             return Setpoints() if sample.pos_ned is not None and sample.v_ned is None else None
         follows = self.control is Control.OURS and self.flown_state is not State.HOLDING
         return Setpoints() if follows and (self.goal or self.hold) is not None else None
+
+    def turn_left_deg(self, within_deg: float | None) -> float:
+        """How far the nose points from the heading of the goal that is flown; 0 where it is within
+        so many degrees of it.  Where the goal names no heading, the vehicle tells none, or none is
+        waited for (None), no turn is left."""
+        goal = self.goal
+        if within_deg is None or goal is None or goal.yaw_rad is None or self.yaw_rad is None:
+            return 0.0
+        left_deg = math.degrees(abs(math.remainder(goal.yaw_rad - self.yaw_rad, math.tau)))
+        return left_deg if left_deg > within_deg else 0.0
 
     @property
     def comes_back(self) -> bool:

@@ -235,8 +235,8 @@ def _position(step: StepContext, seen: PositionSeen) -> Iterator[Occurrence]:
         memory.ground_down_m = None
     memory.pos_ned, memory.v_ned = seen.pos_ned, seen.v_ned
     memory.pos_ns, memory.boot_ms = step.now_ns, seen.time_boot_ms
-    memory.late_s = seen.late_s
-    if memory.goal is None or not within_arrival(step, memory.goal.pos_ned):
+    memory.late_s, memory.yaw_rad = seen.late_s, seen.yaw_rad
+    if not within_arrival(step):
         memory.within_since_ns = None
     elif memory.within_since_ns is None:
         memory.within_since_ns = step.now_ns

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from operator import sub
 
-from gcs.frames import Vec3
 from gcs.gate.inputs import AccuracySeen
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import SECOND_NS
@@ -43,22 +42,24 @@ def arrival_radius_h_m(arrival: Arrival, seen: AccuracySeen) -> float | None:
     return max(arrival.radius_m, min(arrival.radius_m + accuracy_m, most_m))
 
 
-def within_arrival(step: StepContext, goal_ned: Vec3) -> bool:
-    """Strictly inside the arrival radius, and slow enough where the policy asks for it.
+def within_arrival(step: StepContext) -> bool:
+    """Strictly inside the arrival radius of the goal that is flown; slow enough, and turned to the
+    heading that it names, where the policy asks for it.
 
     With the vehicle's accuracy the sphere about the goal grows sideways: an ellipsoid.
     """
     memory, arrival = step.memory, step.policy.arrival
-    if memory.pos_ned is None or memory.v_ned is None:
+    if memory.goal is None or memory.pos_ned is None or memory.v_ned is None:
         return False
     narrower = arrival.radius_m / (memory.arrival_h_m or arrival.radius_m)
-    north_m, east_m, down_m = map(sub, memory.pos_ned, goal_ned)
+    north_m, east_m, down_m = map(sub, memory.pos_ned, memory.goal.pos_ned)
     near = math.hypot(north_m * narrower, east_m * narrower, down_m) < arrival.radius_m
-    return near and (arrival.speed_m_s is None or math.hypot(*memory.v_ned) <= arrival.speed_m_s)
+    slow = arrival.speed_m_s is None or math.hypot(*memory.v_ned) <= arrival.speed_m_s
+    return near and slow and memory.turn_left_deg(arrival.yaw_deg) == 0.0
 
 
 def arrived(step: StepContext) -> bool:
-    """Within the arrival radius for as long as the policy asks, by a fresh position."""
+    """At the goal for as long as the policy asks, by a fresh position."""
     since_ns = step.memory.within_since_ns
     if since_ns is None or step.stale or not _at_height_asked_for(step):
         return False

@@ -157,6 +157,11 @@ def _mode_not_sent(asked: SetMode) -> str:
     )
 
 
+def turn_left(left_deg: float) -> str:
+    """What kept a goal with a heading from its end."""
+    return f"the nose points {left_deg:.0f} deg from the heading that was asked for"
+
+
 def not_shown(request: Request, memory: Memory) -> bool:
     """It is a mode by its name, and not the one that the vehicle is in."""
     return isinstance(request, SetMode) and request.name != memory.mode_name

@@ -30,7 +30,7 @@ from gcs.gate.effects import (
 from gcs.gate.inputs import Requested, StreamSeen
 from gcs.gate.machine.events import Event
 from gcs.gate.machine.memory import GATE, SECOND_NS, Goal, Memory, Task
-from gcs.gate.machine.sentences import ENDED, done_at_once, not_shown, refusal_of
+from gcs.gate.machine.sentences import ENDED, done_at_once, not_shown, refusal_of, turn_left
 from gcs.gate.policy.policy import Policy
 from gcs.gate.refusal import Code, Refusal
 from gcs.gate.requests import BeginStream, Request
@@ -320,6 +320,9 @@ class StepContext:
         if end.code is Code.MODE_CHANGED and self.memory.failsafe:
             sentence = f"a failsafe of the vehicle's own took over: {self.memory.mode_name}"
             return Refusal(Code.VEHICLE_FAILSAFE, sentence)
+        left_deg = self.memory.turn_left_deg(self.policy.arrival.yaw_deg)
+        if end.code is Code.DEADLINE and left_deg:
+            return Refusal(end.code, f"{ENDED[end.code]}: {turn_left(left_deg)}")
         if end.goes_on:
             return Refusal(end.code, f"{ENDED[end.code]}; the vehicle goes on by itself")
         return Refusal(end.code, ENDED[end.code])

@@ -80,7 +80,7 @@ def _build(
     check_names: CheckNames | None,
 ) -> Policy:
     table = _overlay(doc, defaults, doc.data)
-    table["arrival"] = _without_none(table["arrival"], "speed_m_s")
+    table["arrival"] = _without_none(table["arrival"], "speed_m_s", "yaw_deg")
     table["battery"] = _without_none(table["battery"], "low_v", "critical_v", "endurance_s")
     table["severities"] = _severities(doc, table["severities"])
     zones = _read_fence(doc, table["fence"], fence_file)
@@ -108,7 +108,13 @@ def _overlay(doc: toml.Document, defaults: Table, own: Table, at: KeyPath = ()) 
 
 
 _MAY_BE_NONE: Final = frozenset(
-    {"arrival.speed_m_s", "battery.low_v", "battery.critical_v", "battery.endurance_s"}
+    {
+        "arrival.speed_m_s",
+        "arrival.yaw_deg",
+        "battery.low_v",
+        "battery.critical_v",
+        "battery.endurance_s",
+    }
 )
 
 

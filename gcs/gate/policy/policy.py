@@ -31,6 +31,7 @@ PositionAge: TypeAlias = Annotated[float, Meta(ge=0.05, le=10.0)]
 HeartbeatAge: TypeAlias = Annotated[float, Meta(ge=1.0, le=60.0)]
 """The greatest ages: with older ones a vehicle that is not heard would be flown on."""
 Tilt: TypeAlias = Annotated[float, Meta(ge=0.0, le=45.0)]
+YawError: TypeAlias = Annotated[float, Meta(ge=1.0, le=180.0)]
 ThrustError: TypeAlias = Annotated[float, Meta(ge=0.0, le=0.5)]
 DeadBand: TypeAlias = Annotated[float, Meta(ge=0.0, le=0.9)]
 
@@ -40,8 +41,9 @@ class _Section(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Arrival(_Section, frozen=True):
-    """A goal is reached nearer than `radius_m`, slower than `speed_m_s` (None: at any speed),
-    for `dwell_s` without a break.
+    """A goal is reached nearer than `radius_m`, slower than `speed_m_s` (None: at any speed), with
+    the nose within `yaw_deg` of the heading that it names (None: wherever it points), for
+    `dwell_s` without a break.
 
     Beside the goal, not above or below it, the radius grows by the horizontal accuracy that the
     vehicle reports, up to its own acceptance radius and to `max_radius_m`.
@@ -50,6 +52,7 @@ class Arrival(_Section, frozen=True):
     radius_m: FromHundredth
     max_radius_m: FromHundredth
     speed_m_s: FromHundredth | None
+    yaw_deg: YawError | None
     dwell_s: FromZero
 
 
@@ -114,11 +117,12 @@ class Overshoot(_Section, frozen=True):
 
 
 class Speeds(_Section, frozen=True):
-    """The slowest speeds at which a healthy vehicle flies to a goal, for deadlines."""
+    """The slowest speeds at which a healthy vehicle flies to a goal and turns, for deadlines."""
 
     cruise_m_s: FromHundredth
     climb_m_s: FromHundredth
     descend_m_s: FromHundredth
+    turn_deg_s: FromOne
 
 
 class TakeOffLimits(_Section, frozen=True):

@@ -44,7 +44,8 @@ class Flights(Asks):
         timeout_s: float | None = None,
     ) -> Operation:
         """Fly straight there and hover; metres from the local origin.  `yaw_deg` from -360 to 360
-        is clockwise from north; None leaves the heading to the autopilot."""
+        is clockwise from north, and the goal is reached when the nose points there, too; None
+        leaves the heading to the autopilot."""
         ask = goto_of("goto", east_m, north_m, up_m, yaw_deg)
         return self.request(ask, wait, timeout_s)
 
@@ -100,7 +101,7 @@ class Flights(Asks):
         self, yaw_deg: float, *, wait: bool = True, timeout_s: float | None = None
     ) -> Operation:
         """Turn the nose, degrees clockwise from north, and keep the place.  It is complete when the
-        vehicle is at its place; the nose may still turn."""
+        nose points there, within the policy's `[arrival] yaw_deg`."""
         yaw = arguments.degrees("heading", yaw_deg=arguments.finite("heading", yaw_deg=yaw_deg))
         return self.request(ipc.Ask(0, "heading", yaw_deg=yaw), wait, timeout_s)
 

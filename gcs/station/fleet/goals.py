@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Final
 
 import msgspec
 
@@ -18,6 +19,8 @@ from gcs.request_words import goals_of
 from gcs.station.seen import seen_of
 from gcs.vehicle.vehicle import Vehicle
 
+FOLLOWS: Final = frozenset({State.HOVERING, State.MOVING})
+"""Where it flies to a goal with a heading that it may have been asked for, or hovers there."""
 _NOWHERE = Refusal(Code.NO_POSITION, "where the vehicle is now is not known")
 
 
@@ -37,7 +40,7 @@ def settled(ask: ipc.Ask, vehicle: Vehicle) -> ipc.Ask | Refusal:
         place_ned = _kept(seen) or _NOWHERE
     else:
         ((field, goal),) = goals.items()
-        turns_to_rad = seen.goal_yaw_rad if seen.state is State.HOVERING else None
+        turns_to_rad = seen.goal_yaw_rad if seen.state in FOLLOWS else None
         if field == "move_body" and turns_to_rad is not None:
             # It may still turn to the heading that it was asked for: that is meant, and kept.
             seen = replace(seen, yaw_rad=turns_to_rad)
@@ -57,7 +60,7 @@ def settled(ask: ipc.Ask, vehicle: Vehicle) -> ipc.Ask | Refusal:
 
 def _kept(seen: Seen) -> Vec3 | None:
     """What it hovers at or flies to, so that nothing but its heading changes; else where it is."""
-    flies_to = seen.goal_ned if seen.state in (State.HOVERING, State.MOVING) else None
+    flies_to = seen.goal_ned if seen.state in FOLLOWS else None
     return flies_to or seen.pos_ned
 
 

@@ -65,6 +65,7 @@ class Telemetry:
 
     q_ned_from_frd: Quat = (1.0, 0.0, 0.0, 0.0)
     yaw_rad: float | None = None
+    yaw_ns: int = 0
 
     global_ns: int = 0
     lat_deg: float | None = None

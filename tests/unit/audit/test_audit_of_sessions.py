@@ -16,6 +16,7 @@ import gcs as gcs_package
 from gcs import ipc
 from gcs.audit import replay
 from gcs.audit.files import sessions
+from gcs.audit.inputs import start_of
 from gcs.audit.messages import Stored, Tape
 from gcs.audit.turns import NoStartError
 from gcs.config import StationConfig
@@ -227,6 +228,15 @@ def test_a_policy_of_another_version_has_this_ones_defaults() -> None:
     messages[0] = with_data(messages[0], msgspec.json.encode(said))
     result = audited(resealed(messages), tape.attachments)
     assert [(d.kind, d.after) for d in result.first] == [("input", "link 0: open")]
+
+
+def test_a_policy_from_before_headings_were_waited_for_waits_for_none() -> None:
+    session, tape = on_tape()
+    session.feed(LinkEvent(0, "open"))
+    said = json.loads(close(session, tape)[0].data)["data"]
+    assert start_of(msgspec.json.encode(said)).setup.policy == DEFAULT
+    del said["setup"]["policy"]["arrival"]["yaw_deg"]
+    assert start_of(msgspec.json.encode(said)).setup.policy.arrival.yaw_deg is None
 
 
 # ----------------------------------------------------------------------------------- parts

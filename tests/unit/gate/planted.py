@@ -218,6 +218,14 @@ FAULTS = [
         "fence moves, and back",
     ),
     planted(
+        "a goal is over wherever the nose points",
+        State.MOVING,
+        Event.TICK,
+        unguarded(State.MOVING, Event.TICK, Guard.ARRIVED),
+        2,
+        "tick",
+    ),
+    planted(
         "home moves and nobody holds",
         State.HOVERING,
         Event.HOME_MOVED,

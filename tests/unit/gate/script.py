@@ -76,6 +76,7 @@ class Script:
         self.landed = LandedState.ON_GROUND
         self.pos_ned: Vec3 = (0.0, 0.0, 0.0)
         self.v_ned: Vec3 = (0.0, 0.0, 0.0)
+        self.yaw_rad: float | None = None  # it tells no heading
         self.flown = False
         self.reports_position = True
         self.reports_heartbeat = True
@@ -135,7 +136,8 @@ class Script:
         self.position()
 
     def position(self) -> None:
-        self.feed(PositionSeen(self.pos_ned, self.v_ned, self.now_ns // MS))
+        stamp_ms, yaw_rad = self.now_ns // MS, self.yaw_rad
+        self.feed(PositionSeen(self.pos_ned, self.v_ned, stamp_ms, yaw_rad=yaw_rad))
 
     def answer(self, kind: CommandKind, result: int | None, text: str = "") -> None:
         """The vehicle answers the last command of that kind."""

@@ -1,4 +1,5 @@
-"""How near to a goal is there: by the policy, and by what the vehicle says of its own accuracy."""
+"""How near to a goal is there: by the policy, by what the vehicle says of its own accuracy, and by
+where its nose points."""
 
 from __future__ import annotations
 
@@ -109,3 +110,87 @@ def test_no_margin_shrinks_by_it(east_m: float) -> None:
     assert answers[0].ruling == answers[1].ruling
     assert answers[0].evidence == answers[1].evidence
     assert answers[0].refusal == answers[1].refusal
+
+
+# -------------------------------------------------------------------------------- the heading
+
+
+def turning(
+    asked_deg: float, told_deg: float | None, rules: Policy | None = None
+) -> tuple[Script, int]:
+    """At its goal, and asked for a heading there."""
+    script = Script(rules or policy("default")).take_control(UP)
+    script.yaw_rad = None if told_deg is None else math.radians(told_deg)
+    script.tick()
+    return script, script.ask(GoTo((0.0, 0.0, -UP), math.radians(asked_deg)))
+
+
+@pytest.mark.parametrize(
+    ("asked_deg", "told_deg", "arrives"),
+    [
+        (90.0, 85.1, True),
+        (90.0, 84.9, False),
+        (-180.0, 176.0, True),  # the shorter way round
+        (-180.0, 174.0, False),
+        (450.0, 91.0, True),
+        (0.0, 180.0, False),
+        (0.0, None, True),  # told by nobody
+    ],
+)
+def test_a_goal_with_a_heading_is_reached_when_the_nose_points_there(
+    asked_deg: float, told_deg: float | None, arrives: bool
+) -> None:
+    script, goal = turning(asked_deg, told_deg)
+    script.wait(5.0)
+    assert script.ended(goal) is arrives
+    assert script.gate.state is (State.HOVERING if arrives else State.MOVING)
+
+
+def test_the_nose_is_there_for_the_dwell() -> None:
+    script, goal = turning(90.0, 0.0)
+    script.wait(1.0)
+    script.yaw_rad = math.radians(88.0)
+    script.wait(0.45)
+    assert not script.ended(goal)
+    script.yaw_rad = math.radians(96.0)  # past it
+    script.wait(0.2)
+    script.yaw_rad = math.radians(94.0)
+    script.wait(0.5)
+    assert not script.ended(goal)
+    script.wait(0.1)
+    assert script.outcome(goal).kind == "complete"
+    script.yaw_rad = 0.0
+    script.wait(1.0)
+    assert script.gate.state is State.HOVERING, "reached once, it is held"
+
+
+@pytest.mark.parametrize(("name", "arrives"), [("default", False), ("lab", True)])
+def test_the_lab_waits_for_no_heading(name: str, arrives: bool) -> None:
+    script, goal = turning(90.0, 0.0, policy(name))
+    script.wait(2.0)
+    assert script.ended(goal) is arrives
+
+
+@pytest.mark.parametrize(("told_deg", "most_s"), [(0.0, 24.0), (170.0, 20.0)])
+def test_a_nose_that_never_turns_ends_at_the_deadline_which_has_room_for_the_turn(
+    told_deg: float, most_s: float
+) -> None:
+    """180 deg at [speeds] turn_deg_s, twice; 20 s at least."""
+    script, goal = turning(180.0, told_deg)
+    script.wait(most_s - 0.1)
+    assert not script.ended(goal)
+    script.wait(0.2)
+    outcome = script.outcome(goal)
+    assert (outcome.kind, outcome.code) == ("timed out", "DEADLINE")
+    off_deg = 180.0 - told_deg
+    assert f"the nose points {off_deg:.0f} deg from the heading" in outcome.sentence
+    assert script.gate.state is State.HOLDING
+
+
+def test_a_deadline_short_of_the_place_says_nothing_of_the_nose() -> None:
+    script = Script(policy("default")).take_control(UP)
+    script.yaw_rad = 0.0
+    script.tick()
+    goal = script.ask(GoTo((0.0, 10.0, -UP), 0.0))
+    script.wait(21.0)
+    assert script.outcome(goal).sentence == "it took longer than its deadline"

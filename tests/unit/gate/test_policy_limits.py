@@ -44,9 +44,11 @@ def value(policy: Policy, key: str) -> object:
         ("arrival.dwell_s", 0.0, -0.001),
         ("arrival.radius_m", 0.01, 0.009),
         ("arrival.speed_m_s", 0.01, 0.009),
+        ("arrival.yaw_deg", 1.0, 0.99),
         ("speeds.cruise_m_s", 0.01, 0.009),
         ("speeds.climb_m_s", 0.01, 0.009),
         ("speeds.descend_m_s", 0.01, 0.009),
+        ("speeds.turn_deg_s", 1.0, 0.99),
         ("position_age_s", 0.05, 0.049),
         ("takeoff.max_up_m", 0.1, 0.09),
         ("deadline_min_s", 0.1, 0.09),
@@ -102,7 +104,9 @@ def test_no_number_is_larger_than_a_hundred_thousand(key: str) -> None:
     assert error(f"{key} = {MOST + 1}").key == key
 
 
-@pytest.mark.parametrize(("key", "most"), [("separation.within_s", 60.0)])
+@pytest.mark.parametrize(
+    ("key", "most"), [("separation.within_s", 60.0), ("arrival.yaw_deg", 180.0)]
+)
 def test_the_greatest_value(key: str, most: float) -> None:
     assert value(parse_policy(f"{key} = {most}", "my.toml"), key) == most
     assert error(f"{key} = {most + 0.001}").key == key

@@ -13,7 +13,7 @@ from gcs.gate.states import FlightMode
 from gcs.protocol.autopilot import ARDUPILOT, PX4, Autopilot
 from gcs.session.work import GateInput, Work, condition
 from gcs.vehicle.message_to_telemetry import updates
-from gcs.wire.messages import GpsGlobalOrigin, Heartbeat, HomePosition
+from gcs.wire.messages import Attitude, GpsGlobalOrigin, Heartbeat, HomePosition
 from tests.unit.station.vehicles import (
     HOME,
     SECOND_NS,
@@ -39,6 +39,15 @@ def test_a_position_is_heard_with_its_own_stamp_and_kept_with_its_arrival() -> N
     heard = list(updates(position(1000, 1.0, 2.0, -3.0), seen, 5 * SECOND_NS))
     assert GateInput(inputs.PositionSeen((1.0, 2.0, -3.0), (0.0, 0.0, 0.0), 1000)) in heard
     assert seen.position_ns == 5 * SECOND_NS
+
+
+def test_a_position_comes_with_the_heading_that_was_told_of_late() -> None:
+    seen = vehicle()
+    list(updates(Attitude(0, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0), seen, SECOND_NS))
+    for more_ns, yaw_rad in enumerate((0.7, None)):
+        (heard,) = given(updates(position(1000 + more_ns), seen, 2 * SECOND_NS + more_ns))
+        assert isinstance(heard, inputs.PositionSeen)
+        assert heard.yaw_rad == yaw_rad
 
 
 @pytest.mark.parametrize("overtaken_ms", [1000, 970])
