@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import zlib
 from datetime import UTC, datetime
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Unpack
 
@@ -99,9 +98,6 @@ def get(
             talk.say("the vehicle's log folder is not found by FTP: --by messages", err=True)
             raise NotDone(ExitCode.NOT_COMPLETED)
         kind = "ardupilot" if talk.is_ardupilot else "px4"
-        if record and kind == "px4" and find_spec("pyulog") is None:
-            text = "--import of a PX4's log needs the package pyulog"
-            raise ExitError(ExitCode.USAGE, text, "pip install 'mavgate[logs]'")
         target = Path(output or f"vehicle_log_{log.number}{SUFFIXES[kind]}")
         if target.exists() and not force:
             raise ExitError(ExitCode.USAGE, f"{target}: exists already", "--force writes over it")

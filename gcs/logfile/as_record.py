@@ -16,11 +16,11 @@ from gcs.mcap_file.errors import BadLogError, BadRecordError
 from gcs.mcap_file.format import Record
 from gcs.mcap_file.reader import Condition, Progress, Reading
 
-SUFFIXES = (".tlog", ".bin", ".ulg")
+SUFFIXES = (".tlog", ".bin", ".log", ".ulg")
 
 
 class LogReading:
-    """`for record in LogReading(path)`: as `Reading`, of a .tlog, .BIN or .ulg.
+    """`for record in LogReading(path)`: as `Reading`, of a .tlog, .BIN, .log or .ulg.
 
     Raises BadRecordError for what none of them is, and OSError.
     """

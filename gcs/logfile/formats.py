@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from enum import Enum
 from pathlib import Path
 
@@ -10,6 +11,9 @@ from gcs.mcap_file.format import MAGIC as MCAP_MAGIC
 
 _DATAFLASH_MAGIC = b"\xa3\x95"
 _ULOG_MAGIC = b"ULog\x01\x12\x35"
+_TEXT = re.compile(rb"^FMT,", re.MULTILINE)
+_SEARCHED_BYTES = 8_000
+"""A text log begins with lines FMT; before them may be a few of the program that made it."""
 
 
 class Format(Enum):
@@ -18,6 +22,7 @@ class Format(Enum):
     MCAP = "MCAP"
     TLOG = ".tlog"
     DATAFLASH = "ArduPilot .BIN"
+    DATAFLASH_TEXT = "ArduPilot .log"
     ULOG = "PX4 .ulg"
 
 
@@ -27,11 +32,15 @@ def format_of(path: Path) -> Format:
     Raises BadLogError where the file is empty, and OSError.
     """
     with open(path, "rb") as file:
-        head = file.read(16)
+        head = file.read(_SEARCHED_BYTES)
     if not head:
         raise BadLogError(path, "the file is empty")
     if head.startswith(MCAP_MAGIC):
         return Format.MCAP
     if head.startswith(_ULOG_MAGIC):
         return Format.ULOG
-    return Format.DATAFLASH if head.startswith(_DATAFLASH_MAGIC) else Format.TLOG
+    if head.startswith(_DATAFLASH_MAGIC):
+        return Format.DATAFLASH
+    text = _TEXT.search(head)
+    is_text = text is not None and b"\0" not in head[: text.start()]
+    return Format.DATAFLASH_TEXT if is_text else Format.TLOG

@@ -38,18 +38,14 @@ def tables_of(
             yield from _of_tlog(path, only, progress)
         case Format.MCAP:
             yield from _of_mcap(path, only, progress)
-        case Format.DATAFLASH:
-            from gcs.logfile.imports.dataflash import read_dataflash
+        case Format.DATAFLASH | Format.DATAFLASH_TEXT | Format.ULOG:
+            from gcs.logfile.onboard.opened import open_onboard
 
-            for name, rows in read_dataflash(path).tables.items():
-                if only is None or name in only:
+            for part in open_onboard(path).parts(only):
+                for name, _, rows in part.tables:
                     yield Table(name, rows)
-        case Format.ULOG:
-            from gcs.logfile.imports.ulog import read_ulog
-
-            for name, rows in read_ulog(path).tables.items():
-                if only is None or name in only:
-                    yield Table(name, rows)
+                if progress is not None:
+                    progress(part.read_bytes)
 
 
 def _of_tlog(

@@ -128,7 +128,7 @@ class Reading:
                 yield record
             start = condition.position = end
             if end - kept_from >= _KEPT_BYTES:
-                kept_from = _release(data, kept_from, end)
+                kept_from = release(data, kept_from, end)
             if self._progress is not None and end - told >= _TOLD_BYTES:
                 told = end
                 self._progress(end)
@@ -194,7 +194,7 @@ class Following(Reading):
                     yield record
 
 
-def _release(data: mmap.mmap, start: int, end: int) -> int:
+def release(data: mmap.mmap, start: int, end: int) -> int:
     """Drop the pages before `end` from memory, where else a whole file would stay mapped.
 
     Gives where the kept ones begin.  They can be read again, from the disk.

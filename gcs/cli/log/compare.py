@@ -39,7 +39,7 @@ def compare(a: Path, b: Path, output: Path | None, vehicle: int | None, as_json:
 
     One HTML file that needs no network: the same plots over each other from the take-off on, a
     table of figures and their differences, both paths, what went wrong in one alone, parameters
-    that differ. Also of .tlog, .BIN and .ulg.
+    that differ. Also of .tlog, .BIN, .log and .ulg.
 
     Examples: gcs log compare before.mcap after.mcap  |  gcs log compare a.tlog b.ulg --json
     """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from gcs.logfile.exports.track import Track
     from gcs.logfile.imports.result import Imported
 
-SOURCE = FileOfKind(".tlog", ".bin", ".ulg", ".mcap")
+SOURCE = FileOfKind(".tlog", ".bin", ".log", ".ulg", ".mcap")
 TARGET = click.Path(dir_okay=False, path_type=Path)
 Progress: TypeAlias = Callable[[int], None] | None
 ExportKinds: TypeAlias = (
@@ -31,7 +31,7 @@ ExportKinds: TypeAlias = (
 @click.option("-o", "--output", required=True, type=TARGET, help="The new record (.mcap).")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def import_log(file: Path, output: Path, as_json: bool) -> None:
-    """Make a record of FILE, a .tlog, an ArduPilot .BIN or a PX4 .ulg.
+    """Make a record of FILE, a .tlog, an ArduPilot .BIN or .log (its text form) or a PX4 .ulg.
 
     All of it is kept, each kind of message on a topic of its own, damaged stretches too. Position,
     attitude, status, parameters and texts are on the topics of our own flights as well, so that the
@@ -58,6 +58,8 @@ def import_log(file: Path, output: Path, as_json: bool) -> None:
             "kinds": found.kinds,
             "garbage_bytes": found.garbage_bytes,
             "garbage_stretches": found.garbage_stretches,
+            "garbage_at": found.garbage_at,
+            "late": found.late,
             "messages": found.messages,
             "seconds": found.seconds,
         }
@@ -72,9 +74,9 @@ def _print_imported(found: Imported, output: Path) -> None:
         f"from a {found.format}"
     )
     if found.garbage_stretches:
-        click.echo(
-            f"kept too: {found.garbage_bytes} damaged bytes in {found.garbage_stretches} stretches"
-        )
+        click.echo(f"kept too: {found.damage}")
+    if found.late:
+        click.echo(f"{found.late} messages have times that do not fit to those around them")
 
 
 @click.command("export")
@@ -88,7 +90,7 @@ def export_log(file: Path, output: Path, message: str | None) -> None:
 
     .tlog: the frames of a record; an imported .tlog comes out byte for byte. .csv and .parquet:
     each kind of message in a file of its own (flight.ATTITUDE.csv), or the one of --message. .kml
-    and .gpx: where each vehicle was. FILE is a record, or a .tlog, .BIN or .ulg as it is.
+    and .gpx: where each vehicle was. FILE is a record, or a .tlog, .BIN, .log or .ulg as it is.
 
     Examples: gcs log export flight.mcap -o flight.tlog  |
     gcs log export flight.tlog -o attitude.csv --message ATTITUDE

@@ -7,8 +7,7 @@ from math import radians
 from typing import Any
 
 from gcs.gate.states import LandedState
-from gcs.logfile.columns.layout import Records
-from gcs.logfile.imports.flight import Told
+from gcs.logfile.imports.told import Told
 from gcs.logfile.imports.vehicle import ReportedVehicle
 from gcs.protocol.autopilot import ARDUPILOT, ARDUPILOT_OTHER
 from gcs.report import LogEvent
@@ -22,13 +21,12 @@ _EVENT_AUTO_ARMED, _EVENT_LANDED, _EVENT_NOT_LANDED = 15, 18, 28
 (LOG_DISARMED 0) has no event of that, and the next ones imply it."""
 
 
-def told(tables: dict[str, Records]) -> list[Told]:
+def told(system_id: int, *, is_copter: bool) -> list[Told]:
     """What the messages of ArduCopter's log tell of the vehicle (AP_Logger's LogStructure.h).
 
     One position of the estimator (the first core), else POS, else GPS.
     """
-    vehicle = ReportedVehicle(_system_id(tables))
-    is_copter = any(b"ArduCopter" in text for text in _column_of(tables, "MSG", "Message"))
+    vehicle = ReportedVehicle(system_id)
     autopilot = ARDUPILOT if is_copter else ARDUPILOT_OTHER
     state = {"mode": 0, "armed": 0}
 
@@ -77,8 +75,8 @@ def told(tables: dict[str, Records]) -> list[Told]:
         said = row[0].decode("utf-8", "replace")
         return iter((LogEvent(now_ns, INFO, "vehicle", said),) if said else ())
 
-    place = "POS" if "POS" in tables else "GPS"
-    core = "XKF1" if "XKF1" in tables else "NKF1"
+    core = ("PN", "PE", "PD", "VN", "VE", "VD")
+    above_home, above_sea = ("Lat", "Lng", "Alt", "RelHomeAlt"), ("Lat", "Lng", "Alt")
     return [
         Told(vehicle, "PARM", ("Name", "Value"), parameter),
         Told(vehicle, "MSG", ("Message",), text),
@@ -89,25 +87,9 @@ def told(tables: dict[str, Records]) -> list[Told]:
         Told(vehicle, "BAT", ("Volt", "RemPct"), battery),
         Told(vehicle, "BAT", ("Volt",), battery),
         Told(vehicle, "CURR", ("Volt",), battery),
-        Told(vehicle, core, ("PN", "PE", "PD", "VN", "VE", "VD"), local, often=True, only=("C", 0)),
-        Told(vehicle, place, ("Lat", "Lng", "Alt", "RelHomeAlt"), fixed, often=True),
-        Told(vehicle, place, ("Lat", "Lng", "Alt"), fixed, often=True),
+        Told(vehicle, "XKF1", core, local, often=True, only=("C", 0)),
+        Told(vehicle, "NKF1", core, local, often=True, only=("C", 0), unless="XKF1"),
+        Told(vehicle, "POS", above_home, fixed, often=True),
+        Told(vehicle, "POS", above_sea, fixed, often=True),
+        Told(vehicle, "GPS", above_sea, fixed, often=True, unless="POS"),
     ]
-
-
-def _system_id(tables: dict[str, Records]) -> int:
-    """By the parameter of ArduCopter 4.5 or 4.7; 1 where it is not there."""
-    names = _column_of(tables, "PARM", "Name")
-    values = _column_of(tables, "PARM", "Value")
-    for name, value in zip(names, values, strict=True):
-        if name in (b"SYSID_THISMAV", b"MAV_SYSID") and 0 < value < 256:
-            return int(value)
-    return 1
-
-
-def _column_of(tables: dict[str, Records], table: str, column: str) -> list[Any]:
-    rows = tables.get(table)
-    if rows is None or column not in (rows.dtype.names or ()):
-        return []
-    values: list[Any] = rows[column].tolist()
-    return values

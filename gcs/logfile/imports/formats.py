@@ -23,11 +23,28 @@ def importer_of(source: Path) -> Import:
             return import_tlog
         case Format.MCAP:
             raise BadLogError(source, "an MCAP file", "it can be opened as it is: gcs log info")
-        case Format.DATAFLASH:
-            from gcs.logfile.imports.dataflash import import_dataflash
+        case Format.DATAFLASH | Format.DATAFLASH_TEXT | Format.ULOG:
+            return _import_onboard
 
-            return import_dataflash
-        case Format.ULOG:
-            from gcs.logfile.imports.ulog import import_ulog
 
-            return import_ulog
+def _import_onboard(source: Path, writer: BatchWriter, progress: Progress = None) -> Imported:
+    """Raises BadLogError and OSError."""
+    from gcs.logfile.imports import dataflash_vehicle, ulog_vehicle
+    from gcs.logfile.imports.onboard import import_onboard
+    from gcs.logfile.onboard.opened import open_onboard
+    from gcs.logfile.onboard.ulog import Ulog
+
+    log = open_onboard(source)
+    if isinstance(log, Ulog):
+        told = ulog_vehicle.told(log.system_id)
+        result = import_onboard(".ulg", "/ulog", log, told, writer, progress)
+        if result.garbage_stretches:
+            log.info["file_corruption"] = result.damage
+        writer.metadata("ulog", log.info)
+    else:
+        told = dataflash_vehicle.told(log.head.system_id, is_copter=log.head.is_copter)
+        name = ".log" if format_of(source) is Format.DATAFLASH_TEXT else ".BIN"
+        result = import_onboard(name, "/dataflash", log, told, writer, progress)
+    if not result.read:
+        raise BadLogError(source, "there are no messages in it")
+    return result

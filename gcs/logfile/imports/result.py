@@ -16,9 +16,19 @@ class Imported:
     kinds: dict[str, int] = field(default_factory=dict)
     garbage_bytes: int = 0
     garbage_stretches: int = 0
+    garbage_at: int | None = None
+    """Where the first of them begins in the file."""
+    late: int = 0
+    """Messages of an autopilot's own log whose time does not fit to those around them."""
     messages: int = 0
     first_ns: int | None = None
     last_ns: int = 0
+
+    @property
+    def damage(self) -> str:
+        """The bytes that are no message."""
+        said = f"{self.garbage_bytes} damaged bytes in {self.garbage_stretches} stretches"
+        return said if self.garbage_at is None else f"{said}, the first at byte {self.garbage_at}"
 
     @property
     def read(self) -> int:

@@ -7,15 +7,13 @@ from math import isfinite
 from typing import Any
 
 from gcs.gate.states import LandedState
-from gcs.logfile.columns.layout import Records
-from gcs.logfile.imports.flight import Told
+from gcs.logfile.imports.told import Told
 from gcs.logfile.imports.vehicle import ReportedVehicle
+from gcs.logfile.onboard.ulog_messages import PARAMETERS, TEXTS
 from gcs.protocol.autopilot import PX4
 from gcs.report import LogEvent, ParamItem
 from gcs.wire.ids import ModeFlag
 
-TEXTS, PARAMETERS = "logged_messages", "parameters"
-"""Tables that are made of what is no topic of the log."""
 _ARMED = 2
 """vehicle_status.arming_state (PX4's vehicle_status.msg)."""
 _CUSTOM_MODES = {
@@ -40,9 +38,9 @@ _LEVELS = {7: 1, 6: 2, 5: 2, 4: 3, 3: 4, 2: 4, 1: 4, 0: 5}
 """syslog level -> LogEvent.level."""
 
 
-def told(tables: dict[str, Records]) -> list[Told]:
+def told(system_id: int) -> list[Told]:
     """What PX4's topics tell of the vehicle (fields: PX4's msg folder, 1.14 and before)."""
-    vehicle = ReportedVehicle(_system_id(tables))
+    vehicle = ReportedVehicle(system_id)
 
     def local(row: Any, now_ns: int) -> Iterator[Any]:
         return vehicle.local_position(tuple(row[:3]), tuple(row[3:]), now_ns)
@@ -94,12 +92,3 @@ def told(tables: dict[str, Records]) -> list[Told]:
         ),
         Told(vehicle, "vehicle_global_position_0", ("lat", "lon", "alt"), fixed, often=True),
     ]
-
-
-def _system_id(tables: dict[str, Records]) -> int:
-    rows = tables.get(PARAMETERS)
-    if rows is not None:
-        for value in rows["value"][rows["name"] == b"MAV_SYS_ID"].tolist():
-            if 0 < value < 256:
-                return int(value)
-    return 1

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from gcs import ipc
-from gcs.cli import vehicle_log
 from gcs.exit_codes import ExitCode
 from tests.unit.cli.command_line import gcs, in_place_of_one
 from tests.unit.operator.fake_station import FakeStation
@@ -135,15 +134,3 @@ def test_a_part_of_something_else_is_found_by_its_check_sum(
 @pytest.mark.parametrize("which", ["9", "newest"])
 def test_a_log_that_is_none(which: str, station: Station) -> None:
     assert gcs("vehicle-log", "get", which).exit_code == ExitCode.USAGE
-
-
-def test_what_cannot_be_imported_is_not_fetched(
-    station: Station, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(vehicle_log, "find_spec", lambda _: None)
-    result = gcs(
-        "vehicle-log", "get", "1", "-o", tmp_path / "a.ulg", "--import", tmp_path / "a.mcap"
-    )
-    assert result.exit_code == ExitCode.USAGE
-    assert "pip install 'mavgate[logs]'" in result.output
-    assert not any(ask.word.endswith("_read") for ask in station.asked)

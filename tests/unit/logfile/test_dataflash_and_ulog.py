@@ -1,4 +1,4 @@
-"""ArduPilot's .BIN and PX4's .ulg as records: their own readers are the oracles."""
+"""ArduPilot's .BIN and .log and PX4's .ulg as records: their own readers are the oracles."""
 
 from __future__ import annotations
 
@@ -14,27 +14,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 from mcap_ros1.decoder import DecoderFactory
-from pymavlink.DFReader import DFReader_binary
+from pymavlink.DFReader import DFReader_binary, DFReader_text
 
 from gcs.logfile.imports.dataflash_vehicle import told as dataflash_told
+from gcs.record.ros1 import decode_garbage
 from tests.sample_files import elsewhere
 from tests.shares import examples
 from tests.unit.cli.command_line import gcs as run_gcs
+from tests.unit.logfile.onboard_logs import as_text, by_dfreader, vehicle_log
 from tests.unit.logfile.test_import_tlog import imported
 from tests.unit.record.flights import messages_of
-from tests.unit.vehicle_logbook.flights import START_S, Flight, S
-from vehicle_sim.autopilot.interface import StatusText
+from tests.unit.vehicle_logbook.flights import START_S
 from vehicle_sim.autopilot.modes import Personality
 
 pyulog = pytest.importorskip("pyulog")
-
-
-def vehicle_log(personality: Personality) -> bytes:
-    """A flight log that `vehicle-sim` writes."""
-    flight = Flight(personality)
-    flight.fly(2 * S, StatusText(4, "Wind is high"))
-    (log,) = flight.logs
-    return log
 
 
 @pytest.fixture
@@ -64,14 +57,6 @@ def decoded(record: Path) -> dict[str, list[tuple[int, Any]]]:
 
 def _topics(record: Path) -> set[str]:
     return {message.topic for message in messages_of(record)}
-
-
-def by_dfreader(path: Path) -> dict[str, list[Any]]:
-    found: dict[str, list[Any]] = {}
-    with DFReader_binary(str(path)) as reader:
-        while (message := reader.recv_msg()) is not None:
-            found.setdefault(message.get_type(), []).append(message)
-    return found
 
 
 def assert_every_value_is_dfreaders(path: Path, record: Path) -> None:
@@ -166,46 +151,75 @@ def test_both_have_the_topics_of_our_own_flights(
     assert b"Wind is high" in logged
 
 
-def test_without_pyulog_the_command_that_installs_it_is_told(
-    tmp_path: Path, ulg_file: Path, monkeypatch: pytest.MonkeyPatch
+def test_damage_within_a_ulog_is_kept_and_told_with_its_place(
+    tmp_path: Path, ulg_file: Path
 ) -> None:
-    import sys
-
-    monkeypatch.setitem(sys.modules, "pyulog", None)
+    raw = ulg_file.read_bytes()
+    place = raw.index(b"Wind is high") + len(b"Wind is high")
+    ulg_file.write_bytes(raw[:place] + b"\xff" * 40 + raw[place:])
     ended = run_gcs("log", "import", ulg_file, "-o", tmp_path / "a.mcap")
-    assert ended.exit_code == 4
-    assert "pip install 'mavgate[logs]'" in ended.output
+    told = f"40 damaged bytes in 1 stretches, the first at byte {place}"
+    assert told in ended.output
+    with open(tmp_path / "a.mcap", "rb") as file:
+        (info,) = (each for each in make_reader(file).iter_metadata() if each.name == "ulog")
+    assert info.metadata["file_corruption"] == told
 
 
-def test_a_dataflash_message_without_a_length_is_refused(tmp_path: Path, bin_file: Path) -> None:
-    """DFReader would read it for ever."""
-    raw = bytearray(bin_file.read_bytes())
-    with DFReader_binary(str(bin_file)) as reader:
-        second = reader.offsets[0x80][1]
-    raw[second + 4] = 0
-    bin_file.write_bytes(raw)
-    ended = run_gcs("log", "import", bin_file, "-o", tmp_path / "a.mcap")
-    assert ended.exit_code == 4
-    assert "have no length" in ended.output
+def test_a_log_in_text_is_as_dfreader_reads_it(tmp_path: Path, bin_file: Path) -> None:
+    """Real messages too; a text with a comma, of which DFReader drops the rest, is whole."""
+    for name, source in (("made", bin_file), ("real", elsewhere("logs", "test.BIN"))):
+        path = tmp_path / f"{name}.log"
+        said = "MSG, 9000000, one, two" if name == "made" else ""
+        # DFReader leaves out lines whose last value is empty.
+        lines = [line for line in as_text(source).splitlines() if not line.endswith(", ")]
+        path.write_text("\n".join([*lines, said, ""]), encoding="utf-8")
+        told = imported(path, tmp_path / f"{name}.mcap")
+        theirs = by_dfreader(path, DFReader_text)
+        assert told["kinds"] == {kind: len(messages) for kind, messages in theirs.items()}
+        assert told["format"] == ".log"
+        ours = decoded(tmp_path / f"{name}.mcap")
+        for kind, messages in theirs.items():
+            mine = ours[f"/dataflash/{kind}"]
+            for (log_ns, ours_), message in zip(mine, messages, strict=True):
+                for field in message.get_fieldnames():
+                    a, b = getattr(ours_, field), getattr(message, field)
+                    if isinstance(b, str):
+                        a = a.rstrip("\0")
+                        assert a == b or (said and a.startswith(f"{b}, ")), (kind, field)
+                    else:
+                        assert a == pytest.approx(b, rel=1e-6) or math.isnan(a), (kind, field)
+                if hasattr(message, "TimeUS"):
+                    assert log_ns == pytest.approx(message._timestamp * 1e9, abs=20_000), kind
 
 
-@pytest.mark.parametrize(
-    "formats",
-    [
-        [b"big:uint64_t timestamp;float[4000000000] x;"],
-        [b"a:b[60000] x;", b"b:uint8_t[60000] y;"],
-        [b"a:b x;", b"b:a[2] y;"],
-    ],
-)
-def test_a_ulog_format_that_would_fill_the_memory_is_refused(
-    tmp_path: Path, formats: list[bytes]
+def test_a_log_in_text_and_its_binary_form_are_the_same_flight(
+    tmp_path: Path, bin_file: Path
 ) -> None:
-    raw = b"ULog\x01\x12\x35\x01" + bytes(8)
-    raw += b"".join(len(each).to_bytes(2, "little") + b"F" + each for each in formats)
-    (tmp_path / "a.ulg").write_bytes(raw)
-    ended = run_gcs("log", "import", tmp_path / "a.ulg", "-o", tmp_path / "a.mcap")
-    assert ended.exit_code == 4
-    assert "longer than a message can be" in ended.output
+    (tmp_path / "a.log").write_text(as_text(bin_file), encoding="utf-8")
+    states = []
+    for name in ("a.BIN", "a.log"):
+        imported(tmp_path / name, tmp_path / f"{name}.mcap")
+        states.append(
+            [m.data for m in messages_of(tmp_path / f"{name}.mcap") if m.topic.endswith("/state")]
+        )
+    assert len(states[0]) > 5
+    assert states[0] == states[1]
+
+
+def test_a_line_that_is_none_is_kept_and_told_with_its_place(
+    tmp_path: Path, bin_file: Path
+) -> None:
+    lines = as_text(bin_file).splitlines(keepends=True)
+    place = next(n for n, line in enumerate(lines) if line.startswith("ATT"))
+    wrong = ["ATT, 5, 6\n", "ATT, x" + lines[place][5:], "NEVER, 1\n"]
+    path = tmp_path / "a.log"
+    path.write_text("".join([*lines[:place], *wrong, *lines[place:]]), encoding="utf-8")
+    told = imported(path, tmp_path / "a.mcap")
+    assert (told["garbage_bytes"], told["garbage_stretches"]) == (sum(map(len, wrong)), 1)
+    (garbage,) = (m for m in messages_of(tmp_path / "a.mcap") if m.topic == "/link/0/garbage")
+    reason, raw = decode_garbage(garbage.data)
+    assert raw.decode() == "".join(wrong)
+    assert f"byte {sum(map(len, lines[:place]))} on" in reason
 
 
 @pytest.mark.slow
@@ -214,7 +228,7 @@ def test_a_ulog_format_that_would_fill_the_memory_is_refused(
 def test_a_damaged_log_is_read_as_far_as_it_goes_or_refused(
     data: st.DataObject, personality: Personality
 ) -> None:
-    raw = bytearray(_LOGS.setdefault(personality, vehicle_log(personality)))
+    raw = bytearray(vehicle_log(personality))
     for _ in range(data.draw(st.integers(1, 5))):
         at = data.draw(st.integers(0, len(raw) - 1))
         if data.draw(st.booleans()):
@@ -229,13 +243,10 @@ def test_a_damaged_log_is_read_as_far_as_it_goes_or_refused(
         assert "Traceback" not in ended.output
 
 
-_LOGS: dict[Personality, bytes] = {}
-
-
 def test_a_dataflash_log_that_begins_armed_tells_so_by_what_happens_then() -> None:
     """As an ArduCopter 4.7 writes it with LOG_DISARMED 0: no ARM, and no event of the arming."""
     events = [(15, True, "UNDEFINED"), (28, True, "IN_AIR"), (18, True, "ON_GROUND")]
-    told = dataflash_told({"EV": np.zeros(3, [("Id", "u1")])})
+    told = dataflash_told(1, is_copter=True)
     (events_told,) = (each for each in told if each.table == "EV")
     for number, armed, landed in (*events, (11, False, "ON_GROUND")):
         list(events_told.tell((number,), 0))
