@@ -68,7 +68,8 @@ class BatchWriter:
         """All of them, for the summary."""
         self._first_ns: int | None = None
         self._counts: dict[int, int] = {}
-        self._chunks: list[records.ChunkIndex] = []
+        self._chunks: list[bytes] = []
+        """Their indexes as they are written: a large file has thousands."""
         self._attachments: list[records.AttachmentIndex] = []
         self._metadata: list[records.MetadataIndex] = []
         self._put(MAGIC)
@@ -178,8 +179,9 @@ class BatchWriter:
             message_end_time=max(self._last_ns, 0),
             schema_count=len(self._schemas),
         )
-        summary = (statistics, *self._chunks, *self._attachments, *self._metadata)
-        written = self._known.getvalue() + b"".join(map(_bytes_of, summary))
+        parts = [_bytes_of(statistics), *self._chunks]
+        parts += map(_bytes_of, (*self._attachments, *self._metadata))
+        written = self._known.getvalue() + b"".join(parts)
         footer = RECORD_HEAD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", summary_start, 0)
         crc = zlib.crc32(footer, zlib.crc32(written))
         self._put(written + footer + struct.pack("<I", crc) + MAGIC)
@@ -221,19 +223,18 @@ class BatchWriter:
             self._put(
                 _INDEX.pack(Opcode.MESSAGE_INDEX, size + 6, channel, size) + entries.tobytes()
             )
-        self._chunks.append(
-            records.ChunkIndex(
-                chunk_length=chunk_bytes,
-                chunk_start_offset=begin,
-                compression="lz4",
-                compressed_size=len(packed),
-                message_end_time=last_ns,
-                message_index_length=self._position - begin - chunk_bytes,
-                message_index_offsets=places,
-                message_start_time=first_ns,
-                uncompressed_size=len(body),
-            )
+        index = records.ChunkIndex(
+            chunk_length=chunk_bytes,
+            chunk_start_offset=begin,
+            compression="lz4",
+            compressed_size=len(packed),
+            message_end_time=last_ns,
+            message_index_length=self._position - begin - chunk_bytes,
+            message_index_offsets=places,
+            message_start_time=first_ns,
+            uncompressed_size=len(body),
         )
+        self._chunks.append(_bytes_of(index))
 
     # ---------------------------------------------------------------------------------- bytes
 

@@ -10,6 +10,8 @@ import numpy as np
 from gcs.logfile.exports.track import Track
 from gcs.mcap_file.batch_writer import Sink
 
+_POINTS = 10_000
+
 
 def write_kml(title: str, tracks: list[Track], target: Sink) -> None:
     """For each vehicle its path as a line, and the same with times (`gx:Track`)."""
@@ -20,20 +22,25 @@ def write_kml(title: str, tracks: list[Track], target: Sink) -> None:
         f"<Document><name>{escape(title)}</name>\n".encode()
     )
     for track in tracks:
-        places = [f"{lon:.7f},{lat:.7f},{alt:.2f}" for lat, lon, alt in _places(track)]
         target.write(
             f"<Placemark><name>{track.name}</name><LineString>"
             "<altitudeMode>absolute</altitudeMode><coordinates>\n".encode()
         )
-        target.write("\n".join(places).encode())
-        target.write(b"\n</coordinates></LineString></Placemark>\n")
+        for part in _parts(track):
+            target.write(
+                "".join(f"{lon},{lat},{alt}\n" for lat, lon, alt in _places(part)).encode()
+            )
+        target.write(b"</coordinates></LineString></Placemark>\n")
         target.write(
             f"<Placemark><name>{track.name}, with times</name><gx:Track>"
             "<altitudeMode>absolute</altitudeMode>\n".encode()
         )
-        target.write("".join(f"<when>{each}</when>\n" for each in _times(track)).encode())
-        coordinates = (place.replace(",", " ") for place in places)
-        target.write("".join(f"<gx:coord>{each}</gx:coord>\n" for each in coordinates).encode())
+        for part in _parts(track):
+            target.write("".join(f"<when>{each}</when>\n" for each in _times(part)).encode())
+        for part in _parts(track):
+            coordinates = (f"{lon} {lat} {alt}" for lat, lon, alt in _places(part))
+            lines = (f"<gx:coord>{each}</gx:coord>\n" for each in coordinates)
+            target.write("".join(lines).encode())
         target.write(b"</gx:Track></Placemark>\n")
     target.write(b"</Document></kml>\n")
 
@@ -47,20 +54,35 @@ def write_gpx(title: str, tracks: list[Track], target: Sink) -> None:
     )
     for track in tracks:
         target.write(f"<trk><name>{track.name}</name><trkseg>\n".encode())
-        points = [
-            f'<trkpt lat="{lat:.7f}" lon="{lon:.7f}"><ele>{alt:.2f}</ele>'
-            f"<time>{when}</time></trkpt>\n"
-            for (lat, lon, alt), when in zip(_places(track), _times(track), strict=True)
-        ]
-        target.write("".join(points).encode())
+        for part in _parts(track):
+            points = (
+                f'<trkpt lat="{lat}" lon="{lon}"><ele>{alt}</ele><time>{when}</time></trkpt>\n'
+                for (lat, lon, alt), when in zip(_places(part), _times(part), strict=True)
+            )
+            target.write("".join(points).encode())
         target.write(b"</trkseg></trk>\n")
     target.write(b"</gpx>\n")
 
 
-def _places(track: Track) -> Iterator[tuple[float, float, float]]:
-    return zip(
+def _parts(track: Track) -> Iterator[Track]:
+    """Texts of a long path take more memory than the path."""
+    for first in range(0, len(track), _POINTS):
+        part = slice(first, first + _POINTS)
+        yield Track(
+            track.name,
+            track.time_ns[part],
+            track.lat_deg[part],
+            track.lon_deg[part],
+            track.alt_amsl_m[part],
+        )
+
+
+def _places(track: Track) -> Iterator[tuple[str, str, str]]:
+    """Latitude, longitude, height."""
+    for lat, lon, alt in zip(
         track.lat_deg.tolist(), track.lon_deg.tolist(), track.alt_amsl_m.tolist(), strict=True
-    )
+    ):
+        yield f"{lat:.7f}", f"{lon:.7f}", f"{alt:.2f}"
 
 
 def _times(track: Track) -> list[str]:

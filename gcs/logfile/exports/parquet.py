@@ -14,6 +14,8 @@ from gcs.logfile.tables import tables_of
 from gcs.mcap_file.batch_writer import Sink
 from gcs.mcap_file.errors import BadLogError
 
+_GROUP_BYTES = 1 << 20
+
 
 def export_parquet(
     source: Path,
@@ -25,20 +27,42 @@ def export_parquet(
 
     `open_file` gives the file for a kind.  Raises BadLogError where there is nothing to write.
     """
-    writers: dict[str, Any] = {}
+    writers: dict[str, _Writer] = {}
     counts: dict[str, int] = {}
     for name, rows in tables_of(source, None if only is None else (only,), progress):
-        table = _table(rows)
         if name not in writers:
-            sink = pyarrow.PythonFile(_Output(open_file(name)), mode="w")
-            writers[name] = pyarrow.parquet.ParquetWriter(sink, table.schema)
-        writers[name].write_table(table)
+            writers[name] = _Writer(open_file(name), _table(rows[:0]).schema)
+        writers[name].add(rows)
         counts[name] = counts.get(name, 0) + len(rows)
     for writer in writers.values():
         writer.close()
     if not counts:
         raise BadLogError(source, f"no {only} in it" if only else "no messages in it")
     return counts
+
+
+class _Writer:
+    """One file.  Messages are collected, as each group of rows of a file takes memory to its end."""
+
+    def __init__(self, sink: Sink, schema: Any) -> None:
+        output = pyarrow.PythonFile(_Output(sink), mode="w")
+        self._writer = pyarrow.parquet.ParquetWriter(output, schema)
+        self._parts: list[Records] = []
+
+    def add(self, rows: Records) -> None:
+        self._parts.append(rows)
+        if sum(part.nbytes for part in self._parts) >= _GROUP_BYTES:
+            self._write()
+
+    def close(self) -> None:
+        self._write()
+        self._writer.close()
+
+    def _write(self) -> None:
+        if self._parts:
+            tables = [_table(part) for part in self._parts]
+            self._parts = []
+            self._writer.write_table(pyarrow.concat_tables(tables))
 
 
 class _Output:

@@ -72,7 +72,7 @@ def tracks_of(path: Path, progress: Callable[[int], None] | None = None) -> list
     tracks = []
     for sysid in sorted({sysid for sysid, _ in found}):
         for rank in sorted(rank for who, rank in found if who == sysid):
-            track = _track(f"vehicle {sysid}", np.concatenate(found[sysid, rank]))
+            track = _track(f"vehicle {sysid}", np.concatenate(found.pop((sysid, rank))))
             if len(track):
                 tracks.append(track)
                 break
@@ -119,5 +119,7 @@ def _not_too_often(points: NDArray[Any]) -> NDArray[Any]:
 
 def _track(name: str, points: NDArray[Any]) -> Track:
     """In order of time, and not more often than `PERIOD_NS`."""
-    points = _not_too_often(points[np.argsort(points["t"], kind="stable")])
+    if (np.diff(points["t"]) < 0).any():
+        points = points[np.argsort(points["t"], kind="stable")]
+    points = _not_too_often(points)
     return Track(name, points["t"], points["lat"], points["lon"], points["alt"])
