@@ -29,8 +29,9 @@ HOMES: Final = {
     "px4": (47.397742, 8.545594, 488.0),
     "ardupilot": (-35.363262, 149.165237, 584.0),
 }
-APART_M: Final = 5.0
-"""Vehicles of a fleet stand in rows, so far from each other."""
+APART_M: Final = 10.0
+"""Vehicles of a fleet stand in rows, so far from each other: more than the 5 m that ground stations
+keep between two, with what the estimates of both wander by."""
 METRES_PER_DEGREE: Final = 111_319.49
 SYSTEMS_MAX: Final = 250
 """Vehicles that can be told apart on one link; ids above are ground stations'."""

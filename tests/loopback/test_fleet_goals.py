@@ -12,6 +12,7 @@ from gcs.gate.states import State
 from gcs.session import inputs
 from tests.loopback.fleet import Fleet
 from tests.loopback.flight import MISSIONS, Personality
+from vehicle_sim.cli import APART_M as APART_M_OF_FLEETS
 
 APART_M = 60.0
 """Vehicle 2 starts so far east of vehicle 1; both fly 5 m up."""
@@ -77,6 +78,15 @@ def test_one_that_stands_beside_another_climbs_beside_it(personality: Personalit
     flight = Beside(personality)
     flight.climbs(1)
     flight.climbs(2)
+
+
+@pytest.mark.parametrize("personality", ["px4", "ardupilot"])
+def test_a_fleet_that_hovers_where_it_started_is_not_too_close(personality: Personality) -> None:
+    """As `vehicle-sim --count` places it: what the estimates wander by is no warning."""
+    flight = Fleet((personality, personality, personality), apart_m=APART_M_OF_FLEETS)
+    flight.all_flying()
+    flight.run(30.0)
+    assert not [each.text for each in flight.of(ipc.LogEvent) if "too_close" in each.text]
 
 
 def test_a_climb_into_where_another_one_flies_is_refused() -> None:

@@ -15,6 +15,7 @@ def test_it_comes_to_what_it_says_and_its_record_is_whole(tmp_path: Path) -> Non
     ended = gcs("demo", "--fleet", "--log-dir", str(tmp_path))
     assert ended.returncode == 0, ended.stdout + ended.stderr
     assert "vehicle 2: goto -5 15 5: refused OTHER_VEHICLE" in ended.stdout
+    assert "too_close" not in ended.stdout + ended.stderr
     (record,) = tmp_path.glob("*_fleet.mcap")
     audited = gcs("log", "audit", str(record))
     assert audited.returncode == 0, audited.stdout

@@ -142,7 +142,7 @@ FLEET_SCRIPT: Final[tuple[Step, ...]] = (
             Step("takeoff 5", vehicle=number),
         )
     ),
-    Step("goto 20 0 5", say="They start 5 m from each other: apart.", wait=False, vehicle=2),
+    Step("goto 20 0 5", say="They start 10 m from each other: apart.", wait=False, vehicle=2),
     Step("goto 0 20 5", vehicle=3),
     Step(
         "goto 20 20 5",
@@ -159,7 +159,7 @@ FLEET_SCRIPT: Final[tuple[Step, ...]] = (
     ),
     Step("disarm", say="Motors off.", vehicle=1),
 )
-"""Each goal in its vehicle's own frame; vehicle 2 starts 5 m east of vehicle 1, vehicle 3 5 m
+"""Each goal in its vehicle's own frame; vehicle 2 starts 10 m east of vehicle 1, vehicle 3 10 m
 north of it."""
 
 
