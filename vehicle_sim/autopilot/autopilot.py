@@ -5,6 +5,8 @@ What is asked goes to the part (`parts.py`) that answers it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from vehicle_sim.autopilot.boot import Boot, BootStage
 from vehicle_sim.autopilot.flight_state import FlightState
 from vehicle_sim.autopilot.interface import (
@@ -134,6 +136,10 @@ class Autopilot:
             self._power_up()
         else:
             self.parts.faults.inject(fault)
+
+    @property
+    def faults(self) -> Sequence[Fault]:
+        return self.parts.faults.present
 
     @property
     def takes_failures(self) -> bool:

@@ -17,10 +17,14 @@ class FaultInjection:
         self._state = state
         self._blocks = blocks
         self._radio = radio
+        self.present: list[ModelFault | RcLost | ClockJump] = []
+        """What was injected and not ended; one that came in the place of another has replaced
+        it."""
         self.restart()
 
     def restart(self) -> None:
-        """As after power-up."""
+        """As after power-up: the clock is right again."""
+        self.present = [each for each in self.present if not isinstance(each, ClockJump)]
         self._simulated = Simulated(self._state.parameters, self._state.ground.lat_deg)
 
     @property
@@ -39,6 +43,7 @@ class FaultInjection:
         put_home(self._blocks)
 
     def inject(self, fault: ModelFault | RcLost | ClockJump) -> None:
+        self._note(fault)
         match fault:
             case RcLost(lost):
                 self._radio.deaf = lost
@@ -46,3 +51,17 @@ class FaultInjection:
                 self._state.clock_off_ns += by_ns
             case _:
                 inject(fault, self._blocks)
+
+    def _note(self, fault: ModelFault | RcLost | ClockJump) -> None:
+        """A state replaces the one before; jumps of the clock add up, and each is ended by the
+        opposite one."""
+        sound = fault.ended()
+        if isinstance(fault, ClockJump):
+            if sound in self.present:
+                self.present.remove(sound)
+            elif fault.by_ns:
+                self.present.append(fault)
+            return
+        self.present = [each for each in self.present if each.ended() != sound]
+        if fault != sound:
+            self.present.append(fault)

@@ -7,6 +7,7 @@ EKF origin, body axes are forward-right-down, quaternions are w, x, y, z and rot
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum, IntEnum
 from typing import Final, Protocol, TypeAlias
@@ -582,6 +583,11 @@ class Vehicle(Protocol):
     @property
     def takes_failures(self) -> bool:
         """Whether INJECT_FAILURE is allowed (px4: SYS_FAILURE_EN)."""
+        ...
+
+    @property
+    def faults(self) -> Sequence[Fault]:
+        """Those that it has now, of whomever."""
         ...
 
     def inject(self, fault: Fault) -> None:

@@ -6,6 +6,7 @@
     anything else                                           -> {"id": 4, "error": "why not"}
 
 Kinds and keys are those of a fault file; a fault without a vehicle is injected into all of them.
+One that is not there is not mended.
 """
 
 from __future__ import annotations
@@ -29,6 +30,10 @@ class Stage(Protocol):
 
     def inject(self, fault: AnyFault, system: int | None) -> bool:
         """False = no such vehicle, or no such link."""
+        ...
+
+    def faults(self, system: int | None) -> list[AnyFault]:
+        """Those that are there: of a vehicle, or (None) of any, and of the links."""
         ...
 
 
@@ -72,6 +77,11 @@ def _carry_out(asked: dict[str, object], stage: Stage) -> dict[str, object]:
             fault = given.ended() if do == "mend" else given
             if fault is None:
                 raise _WrongError(f"{kind}: does not last, and cannot be mended")
+            present = stage.faults(system)
+            known = system is None or stage.truth(system) is not None
+            if do == "mend" and known and fault not in [each.ended() for each in present]:
+                there = "; ".join(each.described() for each in present) or "none"
+                raise _WrongError(f"{kind}: no such fault to mend; there are: {there}")
             if not stage.inject(fault, system):
                 raise _WrongError(f"vehicle {system}: no such vehicle or link")
             return {}

@@ -101,6 +101,7 @@ class World:
         )
         self._schedule = Schedule(faults)
         self._fault_ns = self._schedule.due_ns(NEVER_NS)
+        self._bad_links: list[LinkFault] = []
         self._greeted = False
 
     @property
@@ -131,11 +132,20 @@ class World:
             if fault.link is not None and fault.link >= len(self._links):
                 return False
             self.impair(fault.link, _DIRECTIONS[fault.direction], _impairment(fault))
+            sound = fault.ended()
+            self._bad_links = [each for each in self._bad_links if each.ended() != sound]
+            self._bad_links += [] if fault == sound else [fault]
             return True
         hit = [server for server in self._servers if system in (None, server.system)]
         for server in hit:
             server.vehicle.inject(fault)
         return bool(hit)
+
+    def faults(self, system: int | None) -> list[AnyFault]:
+        """Those of a vehicle, or (None) of any, and of the links."""
+        asked = [server for server in self._servers if system in (None, server.system)]
+        of_vehicles = [fault for server in asked for fault in server.vehicle.faults]
+        return [*dict.fromkeys(of_vehicles), *self._bad_links]
 
     def truth(self, system: int) -> Truth | None:
         """What really is; None = no such vehicle."""

@@ -27,6 +27,38 @@ def test_a_fault_strikes_and_is_mended() -> None:
     assert [sensed.gps_lost] == [False]
 
 
+@pytest.mark.parametrize("vehicle", [1, None])
+def test_a_fault_that_is_not_there_is_not_mended(vehicle: int | None) -> None:
+    """Motor 2 is not motor 3, a link that delays is a fault of its own, and a clock jumps back by
+    as much as it jumped."""
+    stage = Stage("px4")
+
+    def mend(kind: str, **keys: object) -> object:
+        return ask(stage, do="mend", kind=kind, keys=keys, vehicle=vehicle).get("error")
+
+    assert mend("gps_lost") == "gps_lost: no such fault to mend; there are: none"
+    for kind, keys in (
+        ("motor", {"motor": 2}),
+        ("link", {"delay_s": 0.5}),
+        ("clock_jump", {"by_s": 2.0}),
+        ("rc_lost", {}),
+    ):
+        assert "error" not in ask(stage, do="fault", kind=kind, keys=keys, vehicle=vehicle)
+    assert mend("motor", motor=3) == (
+        "motor: no such fault to mend; there are: motor 2 gives 0 % of its thrust; "
+        "the clock jumps by 2 s; the sticks are lost; every link delays by 0.5 s, +-0 s"
+    )
+    assert str(mend("clock_jump", by_s=1.0)).startswith("clock_jump: no such fault to mend")
+    for kind, keys in (
+        ("motor", {"motor": 2}),
+        ("link", {}),
+        ("clock_jump", {"by_s": 2.0}),
+        ("rc_lost", {}),
+    ):
+        assert mend(kind, **keys) is None
+        assert str(mend(kind, **keys)).startswith(f"{kind}: no such fault to mend")
+
+
 def test_truth_is_told_in_full() -> None:
     stage = Stage("ardupilot")
     stage.run(1.0)

@@ -29,6 +29,9 @@ class EmptyStage:
     def inject(self, fault: AnyFault, system: int | None) -> bool:
         return False
 
+    def faults(self, system: int | None) -> list[AnyFault]:
+        return []
+
 
 @pytest.mark.parametrize("line", [b"[" * (LINE_MAX - 1), b'{"id":' + b"[" * 60_000, b"\xff", b"1"])
 def test_the_control_line_answers_whatever_is_written(line: bytes) -> None:

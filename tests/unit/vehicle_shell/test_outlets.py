@@ -143,6 +143,9 @@ class Stage:
         self.befell.append((fault, system))
         return system in (None, 1)
 
+    def faults(self, system: int | None) -> list[AnyFault]:
+        return [fault for fault, whom in self.befell if whom == system]
+
 
 def ask(stage: Stage, line: str) -> dict[str, object]:
     told = json.loads(answer(line.encode(), stage))
