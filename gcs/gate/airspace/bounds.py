@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 from gcs.frames import Vec3
 from gcs.gate.airspace.clearance import NO_MARGINS, Margins
 from gcs.gate.airspace.explain import metres
-from gcs.gate.airspace.fence_check import FenceCheck
+from gcs.gate.airspace.fence_check import FenceCheck, Slack
 from gcs.gate.airspace.zones import Zone
 from gcs.gate.geometry import REACH_M
 from gcs.gate.policy.policy import Policy
@@ -28,7 +29,7 @@ FASTEST_M_S = 1.0e4
 """No vehicle is faster than this; a larger velocity is a wrong number."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Bounds:
     """One fence, home and autopilot.  Positions are local NED, in metres.
 
@@ -44,13 +45,23 @@ class Bounds:
     fence_on: bool = True
     unplaced: Refusal | None = None
 
-    @property
+    @cached_property
     def judge(self) -> FenceCheck:
         """Judges by the zones; by none where the fence is off."""
         zones = self.zones if self.fence_on else ()
         return FenceCheck(zones, self.policy, self.policy.braking_of(self.autopilot))
 
-    @property
+    @cached_property
+    def judge_within_error(self) -> FenceCheck:
+        """As `judge`; a stop may be nearer than the margin by no more than the position's error."""
+        return replace(self.judge, slack=Slack.ERROR)
+
+    @cached_property
+    def judge_within_margin(self) -> FenceCheck:
+        """As `judge`; a stop may be nearer than the margin by the whole of it."""
+        return replace(self.judge, slack=Slack.MARGIN)
+
+    @cached_property
     def position_error(self) -> Margins:
         """By how much a reported position may be wrong."""
         b = self.policy.braking_of(self.autopilot)

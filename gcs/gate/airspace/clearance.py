@@ -18,6 +18,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
+from typing import NamedTuple
 
 from gcs.frames import Vec3, enu_from_ned
 from gcs.gate.airspace.zones import Zone
@@ -33,8 +35,7 @@ class Face(Enum):
     BODY = "inside"
 
 
-@dataclass(frozen=True, slots=True)
-class Measure:
+class Measure(NamedTuple):
     """The clearance from one face, in metres: at the start of a motion, and the least along it."""
 
     zone: Zone
@@ -57,8 +58,7 @@ class Margins:
 NO_MARGINS = Margins(0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Motion:
+class Motion(NamedTuple):
     """A straight way over the ground from `a` to `b`: each (east, north) and up, in metres from the
     local origin."""
 
@@ -69,22 +69,22 @@ class Motion:
 
     @staticmethod
     def between(a_ned: Vec3, b_ned: Vec3) -> Motion:
-        a, b = enu_from_ned(a_ned), enu_from_ned(b_ned)
-        return Motion(a[:2], a[2], b[:2], b[2])
+        a_east, a_north, a_up = enu_from_ned(a_ned)
+        b_east, b_north, b_up = enu_from_ned(b_ned)
+        return Motion((a_east, a_north), a_up, (b_east, b_north), b_up)
 
 
 def inclusion_measures(zone: Zone, motion: Motion, *, floor_applies: bool) -> list[Measure]:
     """The measures of an inclusion zone: sides, ceiling and, where it applies, floor."""
-    m = motion
-    sides = Measure(
-        zone, Face.SIDES, zone.shape.clearance(m.a_en), zone.shape.inner_clearance(m.a_en, m.b_en)
-    )
+    a_en, a_up_m, b_en, b_up_m = motion
+    shape = zone.shape
+    sides = Measure(zone, Face.SIDES, shape.clearance(a_en), shape.inner_clearance(a_en, b_en))
     top = zone.ceiling_up_m
-    ceiling = Measure(zone, Face.CEILING, top - m.a_up_m, top - max(m.a_up_m, m.b_up_m))
+    ceiling = Measure(zone, Face.CEILING, top - a_up_m, top - max(a_up_m, b_up_m))
     if not floor_applies:
         return [sides, ceiling]
     low = zone.floor_up_m
-    floor = Measure(zone, Face.FLOOR, m.a_up_m - low, min(m.a_up_m, m.b_up_m) - low)
+    floor = Measure(zone, Face.FLOOR, a_up_m - low, min(a_up_m, b_up_m) - low)
     return [sides, ceiling, floor]
 
 
@@ -109,7 +109,7 @@ def swept_body_measure(zone: Zone, motion: Motion, beside_m: float) -> Measure |
     return Measure(zone, Face.BODY, start_m, zone.shape.outer_clearance(m.a_en, m.b_en))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class StopLimit:
     """The least clearance that a predicted stop must have from one face.
 
@@ -123,20 +123,22 @@ class StopLimit:
     slack_m: float
     creep_m: float
 
-    @property
+    @cached_property
     def limit_m(self) -> float:
         return self.error_m + self.margin_m - self.slack_m
 
-    @property
+    @cached_property
     def outermost_m(self) -> float:
         """With less clearance than this the present position is a breach, however it moves."""
         return min(0.0, self.limit_m)
 
     def broken_by(self, measure: Measure) -> bool:
         """Does the measured way to the stop break the limit?  One that is not finite does."""
-        start_m = measure.start_m
-        error_bound_m = min(self.error_m, self.limit_m, start_m - TOLERANCE_M)
-        creep_bound_m = min(self.limit_m, start_m - self.creep_m)
-        bound_m = max(error_bound_m, creep_bound_m)
-        kept = start_m >= self.outermost_m and measure.least_m >= bound_m
-        return not kept
+        start_m, limit_m = measure.start_m, self.limit_m
+        if not start_m >= self.outermost_m:
+            return True
+        if measure.least_m >= limit_m:
+            return False
+        error_bound_m = min(self.error_m, limit_m, start_m - TOLERANCE_M)
+        creep_bound_m = min(limit_m, start_m - self.creep_m)
+        return not measure.least_m >= max(error_bound_m, creep_bound_m)

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 
 from gcs.enu_text import place
 from gcs.frames import Vec3, enu_from_ned
@@ -46,7 +47,7 @@ class Slack(Enum):
     MARGIN = "margin"  # by the margin: what is sent to its goal may fly past it, and comes back
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FenceCheck:
     """Judges by the zones of one fence; see `clearance.py` for the three rules.
 
@@ -61,7 +62,7 @@ class FenceCheck:
     least_h_m: float = 0.0
     slack: Slack = Slack.POLICY
 
-    @property
+    @cached_property
     def margins(self) -> Margins:
         return Margins(max(self.policy.margin_h_m, self.least_h_m), self.policy.margin_v_m)
 
@@ -173,20 +174,34 @@ class FenceCheck:
         """The first measure of the way to a predicted stop that breaks its limit; None if none
         does."""
         motion = Motion.between(pos_ned, stop_ned)
-        measures = self._stop_measures(motion, floor_applies)
-        return next((m for m in measures if self.stop_limit(m.face).broken_by(m)), None)
+        for measure in self._stop_measures(motion, floor_applies):
+            if self.stop_limit(measure.face).broken_by(measure):
+                return measure
+        return None
 
     def stop_limit(self, face: Face) -> StopLimit:
         """The limit for a predicted stop.  The slack may let it leave an inclusion zone, but never
         enter an exclusion zone."""
+        if face is Face.SIDES:
+            return self._beside_limit
+        return self._body_limit if face is Face.BODY else self._stacked_limit
+
+    @cached_property
+    def _stacked_limit(self) -> StopLimit:
         p, b = self.policy, self.braking
-        if face in (Face.CEILING, Face.FLOOR):
-            slack_m = self._slack_m(p.brake_slack_v_m, p.margin_v_m, b.position_error_v_m)
-            return StopLimit(b.position_error_v_m, p.margin_v_m, slack_m, p.creep_m)
+        slack_m = self._slack_m(p.brake_slack_v_m, p.margin_v_m, b.position_error_v_m)
+        return StopLimit(b.position_error_v_m, p.margin_v_m, slack_m, p.creep_m)
+
+    @cached_property
+    def _beside_limit(self) -> StopLimit:
+        p, b = self.policy, self.braking
         slack_m = self._slack_m(p.brake_slack_h_m, p.margin_h_m, b.position_error_h_m)
-        if face is Face.BODY:
-            slack_m = min(slack_m, b.position_error_h_m + p.margin_h_m)
         return StopLimit(b.position_error_h_m, p.margin_h_m, slack_m, p.creep_m)
+
+    @cached_property
+    def _body_limit(self) -> StopLimit:
+        beside = self._beside_limit
+        return replace(beside, slack_m=min(beside.slack_m, beside.error_m + beside.margin_m))
 
     def _slack_m(self, policy_m: float, margin_m: float, error_m: float) -> float:
         match self.slack:

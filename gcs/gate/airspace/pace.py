@@ -31,7 +31,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 from msgspec import structs
@@ -39,7 +40,6 @@ from msgspec import structs
 from gcs.enu_text import fixed
 from gcs.frames import Vec3
 from gcs.gate.airspace.bounds import STANDING, Bounds
-from gcs.gate.airspace.fence_check import Slack
 from gcs.gate.airspace.stopping import travel_m
 from gcs.gate.policy.policy import Pace, Paces, Policy
 from gcs.gate.refusal import Code, Refusal
@@ -118,7 +118,7 @@ def paced(
     react_h_s = braking.react_s + rules.level.lag_s
     react_v_s = braking.react_s + rules.vertical.lag_s
 
-    judge = replace(bounds.judge, slack=Slack.ERROR)
+    judge = bounds.judge_within_error
 
     def is_free(from_ned: Vec3, to_ned: Vec3) -> bool:
         return (
@@ -186,7 +186,7 @@ def speed_there(bounds: Bounds, goal_ned: Vec3, pos_ned: Vec3, most_m_s: float) 
     return math.hypot(*sent.v_ned)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Axis:
     """Level or vertical: `left_m` to the goal, at `speed_m_s` towards it; `may_pass`: there is room
     to fly past it; `per_m`: the speed that was asked for, by the length of the way that is left."""
@@ -198,12 +198,12 @@ class _Axis:
     may_pass: bool
     per_m: float
 
-    @property
+    @cached_property
     def flown_m(self) -> float:
         """So far ahead of the reported position it is by now."""
         return max(0.0, self.speed_m_s) * self.late_s
 
-    @property
+    @cached_property
     def wanted_m_s(self) -> float:
         """The speed where everything is open."""
         pace, left_m = self.pace, max(0.0, self.left_m - self.flown_m)
@@ -216,7 +216,7 @@ class _Axis:
             most_m_s = min(most_m_s, self.per_m * self.left_m)
         return min(most_m_s, max(0.0, self.speed_m_s) + pace.gain_m_s, end_m_s)
 
-    @property
+    @cached_property
     def most_m_s(self) -> float:
         """The most that is wanted or flown: the stop from it is looked at."""
         return max(self.wanted_m_s, self.speed_m_s)

@@ -12,7 +12,7 @@ from gcs.gate.airspace import stopping
 from gcs.gate.airspace.bounds import Bounds
 from gcs.gate.airspace.clearance import Measure
 from gcs.gate.airspace.explain import metres
-from gcs.gate.airspace.fence_check import FenceCheck, Slack
+from gcs.gate.airspace.fence_check import FenceCheck
 from gcs.gate.airspace.stopping import Path, StopBy
 from gcs.gate.policy.policy import Overshoot
 from gcs.gate.refusal import Code, Refusal
@@ -55,9 +55,7 @@ def bad_stop(
         if not floor_applies and home_ned is not None:
             down_m = min(down_m, max(pos_ned[2], home_ned[2]))
         stop_ned = (north_m, east_m, down_m)
-        judge = bounds.judge
-        if by is StopBy.SETPOINT:
-            judge = replace(judge, slack=Slack.MARGIN)
+        judge = bounds.judge_within_margin if by is StopBy.SETPOINT else bounds.judge
         measure = judge.broken_stop(pos_ned, stop_ned, floor_applies=floor_applies)
         if measure is None:
             return None

@@ -30,7 +30,7 @@ from gcs.gate.policy.zonespec import ZoneSpec
 from gcs.gate.refusal import Refusal
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Verifier(Bounds):
     """Answers for one fence, home and autopilot.  Positions and velocities are local NED, in metres
     and metres per second.
