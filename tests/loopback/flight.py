@@ -49,6 +49,7 @@ HOMES: dict[Personality, Geodetic] = {
     "ardupilot": Geodetic(-35.363262, 149.165237, 584.0),
 }
 PEER = "ground station"
+WAKE, WORLD_WAKE = inputs.Wake(), WorldWake()
 MISSIONS = Path(__file__).parents[2] / "missions"
 
 
@@ -186,15 +187,16 @@ class Flight(Looks):
             for data in self.down.arrived(next_ns):
                 self.feed(inputs.Datagram(0, data))
         if world_ns <= next_ns:
-            self._vehicle(WorldWake())
+            self._vehicle(WORLD_WAKE)
         if session_ns <= next_ns:
-            self.feed(inputs.Wake())
+            self.feed(WAKE)
         return True
 
     def _vehicle(self, given: Inbound | WorldWake) -> None:
         for output in self.world.handle(given, self.now_ns):
-            ours = isinstance(output, Transmit) and output.peer == PEER
-            if isinstance(output, Transmit) and ours and not self.vehicle_silent:
+            if not isinstance(output, Transmit) or output.peer != PEER:
+                continue
+            if not self.vehicle_silent:
                 data = self._without_lost(output.data)
                 if data:
                     self.received.append(Sent(self.now_ns, data))

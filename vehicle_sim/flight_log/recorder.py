@@ -130,13 +130,14 @@ class Recorder:
         """After each step of the vehicle, with what happened in it."""
         vehicle = self._vehicle
         self._has_armed = self._has_armed or vehicle.armed
-        if not self._wanted and self._log is None:
+        wanted = self._wanted
+        if not wanted and self._log is None:
             self._armed_us, self._full = None, False
             return []
         if not self._enabled or self._full:
             return []
         try:
-            self._record(events)
+            self._record(events, wanted)
         except StoreError as error:
             self._log, self._full = None, True
             return [Note("warning", f"the flight log ends here: {error}")]
@@ -169,9 +170,10 @@ class Recorder:
         for log in self._shelf.logs():
             self._shelf.remove(log.path)
 
-    def _record(self, events: Sequence[VehicleEvent]) -> None:
+    def _record(self, events: Sequence[VehicleEvent], wanted: bool) -> None:
         vehicle = self._vehicle
-        time_us = vehicle.time_ns // 1000
+        time_ns = vehicle.time_ns
+        time_us = time_ns // 1000
         if self._armed_us is None:
             self._armed_us = time_us
         log = self._log
@@ -181,16 +183,17 @@ class Recorder:
         for event in events:
             if isinstance(event, StatusText):
                 log.buffer += log.form.text(time_us, event.severity, event.text)
-        due = vehicle.time_ns >= log.due_ns
+        due = time_ns >= log.due_ns
         # The rest of the status is looked at with each sample: home costs a projection.
-        if due or (vehicle.armed, vehicle.custom_mode) != log.status[:2]:
+        was = log.status
+        if due or vehicle.armed is not was.armed or vehicle.custom_mode != was.custom_mode:
             status = self._status()
             if status != log.status:
                 log.buffer += log.form.change(self._snapshot(status, log.armed_us), log.status)
                 log.status = status
         if due:
             self._sample(log)
-        if not self._wanted:
+        if not wanted:
             self.flush()
             self._log = self._armed_us = None
         elif len(log.buffer) >= FLUSH_BYTES:

@@ -365,33 +365,33 @@ class VehicleServer:
         vehicle.wall(wall_ns)
         vehicle.live()
         events = vehicle.events()
+        now_ns, clock_ns = vehicle.time_ns, vehicle.clock_ns
         effects = self._recorder.step(events)
         opened = self._recorder.opened()
         if opened is not None and self._profile.tells_log_path:
             events.append(StatusText(6, f"[logger] .{opened.removeprefix(PX4_STORAGE)}"))
         for event in events:
             effects += self._event(event)
-        if self._reached and vehicle.time_ns >= self._reached[0][0]:
+        if self._reached and now_ns >= self._reached[0][0]:
             effects.append(Send(None, m.MissionItemReached(self._reached.pop(0)[1])))
         effects += self._changes()
-        if vehicle.clock_ns < self._clock_ns:
+        if clock_ns < self._clock_ns:
             self.system = self._info.system = int(self._given.si(Quantity.SYSTEM_ID))
             self._events.restart()
         effects += self._events.step(wall_ns)
-        self._clock_ns = vehicle.clock_ns
+        self._clock_ns = clock_ns
         if wall_ns >= self.deadline_ns:
             effects += self._missions.tick(wall_ns)
             effects += self._parameters.tick(wall_ns)
             effects += self._logs.tick(wall_ns)
             effects += self._ftp.tick(wall_ns)
             self._schedule()
-        if vehicle.time_ns >= self._due_ns:
-            effects += self._stream()
+        if now_ns >= self._due_ns:
+            effects += self._stream(now_ns)
         return effects
 
-    def _stream(self) -> list[Effect]:
+    def _stream(self, now_ns: int) -> list[Effect]:
         effects: list[Effect] = []
-        now_ns = self.vehicle.time_ns
         next_ns = NEVER
         built: dict[int, m.Message | None] = {}
         rows: dict[tuple[int, ...], list[m.Message]] = {}

@@ -26,6 +26,12 @@ _OFFSET: Final = frozenset({MavFrame.LOCAL_OFFSET_NED, MavFrame.BODY_NED, MavFra
 _FRAMES_PX4: Final = frozenset({MavFrame.LOCAL_NED, MavFrame.BODY_NED})
 _FRAMES_ARDUPILOT: Final = _OFFSET | {MavFrame.LOCAL_NED}
 _PLACES: Final = ABSOLUTE | RELATIVE
+# As plain numbers: what a flag does with a number costs more than all that is done with the answer.
+_POSITION: Final = int(PositionIgnore.POSITION)
+_VELOCITY: Final = int(PositionIgnore.VELOCITY)
+_ACCELERATION: Final = int(PositionIgnore.ACCELERATION)
+_YAW: Final = int(PositionIgnore.YAW)
+_YAW_RATE: Final = int(PositionIgnore.YAW_RATE)
 
 
 class BadSetpointError(Exception):
@@ -40,7 +46,7 @@ def local_setpoint(
     if frame not in (_FRAMES_ARDUPILOT if profile.offset_frames else _FRAMES_PX4):
         raise BadSetpointError(f"frame {frame} is not supported")
     heading_rad = euler_rad(vehicle.estimate.q_ned_from_frd)[2] if frame in _BODY else 0.0
-    place = _vector(asked.type_mask, PositionIgnore.POSITION, (asked.x, asked.y, asked.z), profile)
+    place = _vector(asked.type_mask, _POSITION, (asked.x, asked.y, asked.z), profile)
     if place is not None:
         place = _rotated(place, heading_rad)
         if frame in _OFFSET:
@@ -58,7 +64,7 @@ def global_setpoint(
     if asked.coordinate_frame not in _PLACES:
         raise BadSetpointError(f"frame {asked.coordinate_frame} is not supported")
     raw = (asked.lat_int * 1e-7, asked.lon_int * 1e-7, asked.alt)
-    given = _vector(asked.type_mask, PositionIgnore.POSITION, raw, profile)
+    given = _vector(asked.type_mask, _POSITION, raw, profile)
     place = None
     if given is not None:
         place = _global_place(vehicle, profile, given, asked.coordinate_frame in RELATIVE)
@@ -107,9 +113,9 @@ def _setpoint(
 ) -> Setpoint:
     """Everything but the position, which is the same in both messages."""
     mask = asked.type_mask
-    velocity = _vector(mask, PositionIgnore.VELOCITY, (asked.vx, asked.vy, asked.vz), profile)
-    thrust = _vector(mask, PositionIgnore.ACCELERATION, (asked.afx, asked.afy, asked.afz), profile)
-    yaw = _scalar(mask, PositionIgnore.YAW, asked.yaw, profile)
+    velocity = _vector(mask, _VELOCITY, (asked.vx, asked.vy, asked.vz), profile)
+    thrust = _vector(mask, _ACCELERATION, (asked.afx, asked.afy, asked.afz), profile)
+    yaw = _scalar(mask, _YAW, asked.yaw, profile)
     if yaw is not None and profile.offset_frames:
         yaw = math.remainder(yaw + heading_rad, 2.0 * math.pi)
     setpoint = Setpoint(
@@ -117,7 +123,7 @@ def _setpoint(
         v_ned=_rotated(velocity, heading_rad) if velocity is not None else None,
         a_ned=_rotated(thrust, heading_rad) if thrust is not None else None,
         yaw_rad=yaw,
-        yaw_rate_rad_s=_scalar(mask, PositionIgnore.YAW_RATE, asked.yaw_rate, profile),
+        yaw_rate_rad_s=_scalar(mask, _YAW_RATE, asked.yaw_rate, profile),
     )
     if setpoint.pos_ned is None and setpoint.v_ned is None and setpoint.a_ned is None:
         raise BadSetpointError(f"type_mask {mask} leaves nothing to fly to")
@@ -152,10 +158,12 @@ def attitude_setpoint(asked: m.SetAttitudeTarget) -> AttitudeSetpoint:
     return AttitudeSetpoint(q, rates, asked.thrust)
 
 
-def _vector(mask: int, ignore: PositionIgnore, value: Vec3, profile: Profile) -> Vec3 | None:
+def _vector(mask: int, ignore: int, value: Vec3, profile: Profile) -> Vec3 | None:
     ignored = mask & ignore
     if ignored == ignore or (ignored and profile.whole_masks):
         return None
+    if not ignored and all([abs(part) <= FARTHEST for part in value]):
+        return value
     lowest = ignore & -ignore
     used = [not ignored & lowest << axis for axis in range(3)]
     if not profile.whole_masks:
@@ -168,7 +176,7 @@ def _vector(mask: int, ignore: PositionIgnore, value: Vec3, profile: Profile) ->
     return (x, y, z)
 
 
-def _scalar(mask: int, ignore: PositionIgnore, value: float, profile: Profile) -> float | None:
+def _scalar(mask: int, ignore: int, value: float, profile: Profile) -> float | None:
     """None where the mask leaves it out; to PX4, which has no other mask inside, NaN does too."""
     if mask & ignore or (math.isnan(value) and not profile.whole_masks):
         return None

@@ -112,7 +112,7 @@ class Air(Generic[T]):
         self._direction = direction
         self._streams = streams
         self._paths: dict[int, Path] = {}
-        self._flying: list[tuple[int, int, int, Peer, T]] = []  # arrival, order, link
+        self.flying: list[tuple[int, int, int, Peer, T]] = []  # arrival, order, link
         self._count = 0
 
     def impair(self, link: int | None, impairment: Impairment) -> None:
@@ -134,14 +134,14 @@ class Air(Generic[T]):
         """One is sent; what has arrived by now."""
         for at_ns in self._paths[link].handle(peer, now_ns):
             self._count += 1
-            heapq.heappush(self._flying, (at_ns, self._count, link, peer, datagram))
+            heapq.heappush(self.flying, (at_ns, self._count, link, peer, datagram))
         return self.arrived(now_ns)
 
     def arrived(self, now_ns: int) -> list[T]:
         """In order of arrival."""
         arrived = []
-        while self._flying and self._flying[0][0] <= now_ns:
-            arrived.append(heapq.heappop(self._flying)[4])
+        while self.flying and self.flying[0][0] <= now_ns:
+            arrived.append(heapq.heappop(self.flying)[4])
         return arrived
 
     def forget(self, link: int, peer: Peer) -> None:
@@ -149,10 +149,10 @@ class Air(Generic[T]):
         if link in self._paths:
             self._paths[link].forget(peer)
         if self._streams[link]:
-            self._flying = [each for each in self._flying if each[2:4] != (link, peer)]
-            heapq.heapify(self._flying)
+            self.flying = [each for each in self.flying if each[2:4] != (link, peer)]
+            heapq.heapify(self.flying)
 
     @property
     def deadline_ns(self) -> int:
         """Wall time of the next arrival."""
-        return self._flying[0][0] if self._flying else NEVER_NS
+        return self.flying[0][0] if self.flying else NEVER_NS

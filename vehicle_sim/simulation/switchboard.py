@@ -70,6 +70,16 @@ class Switchboard:
             self._outbound.impair(link, impairment)
 
     @property
+    def arriving(self) -> bool:
+        """Whether a datagram that was delayed is on its way to the vehicles."""
+        return bool(self._inbound.flying)
+
+    @property
+    def departing(self) -> bool:
+        """Whether a datagram that was delayed is on its way to the clients."""
+        return bool(self._outbound.flying)
+
+    @property
     def arrival_ns(self) -> int:
         """When the next datagram that was delayed arrives at the vehicles."""
         return self._inbound.deadline_ns

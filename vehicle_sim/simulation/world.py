@@ -175,7 +175,7 @@ class World:
             for number, link in enumerate(self._links):
                 for peer in link.peers:
                     self._board.join(number, peer, now_ns, out)
-        while (due_ns := self._board.arrival_ns) <= now_ns:
+        while self._board.arriving and (due_ns := self._board.arrival_ns) <= now_ns:
             self._live(due_ns, out)
             self._board.arrive(due_ns, out)
             self._note_roused()
@@ -198,22 +198,27 @@ class World:
     def _live(self, now_ns: int, out: list[Output]) -> None:
         """All steps that are over by then, and what leaves a slow link meanwhile."""
         steps = (now_ns - self._start_ns) * self._numerator // (self._denominator * self._dt_ns)
+        board, agenda, view = self._board, self._agenda, self._view
         while self._steps < steps:
-            self._steps += 1
-            wall_ns = self._wall_ns(self._steps)
-            self._board.depart(wall_ns, out)
-            if self.time_ns >= self._fault_ns:
+            self._steps = step = self._steps + 1
+            if board.departing:
+                board.depart(self._wall_ns(step), out)
+            if step * self._dt_ns >= self._fault_ns:
                 self._inject_due(out)
             for engine in self._engines:
                 engine.step()
-            for number in sorted(self._agenda.pop(self._steps, ())):
-                server = self._servers[number]
-                self._board.emit(server, server.step(wall_ns), wall_ns, out)
-                self._plan(number)
-            if self._view is not None and self.time_ns >= self._view.due_ns:
-                out += self._view.step(self.time_ns)
-                self._agenda.setdefault(-(-self._view.due_ns // self._dt_ns), set())
-        self._board.depart(now_ns, out)
+            wanted = agenda.pop(step, None)
+            if wanted:
+                wall_ns = self._wall_ns(step)
+                for number in sorted(wanted):
+                    server = self._servers[number]
+                    board.emit(server, server.step(wall_ns), wall_ns, out)
+                    self._plan(number)
+            if view is not None and self.time_ns >= view.due_ns:
+                out += view.step(self.time_ns)
+                agenda.setdefault(-(-view.due_ns // self._dt_ns), set())
+        if board.departing:
+            board.depart(now_ns, out)
 
     def _inject_due(self, out: list[Output]) -> None:
         for timed in self._schedule.due(self.time_ns):

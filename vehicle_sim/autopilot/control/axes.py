@@ -19,8 +19,10 @@ _POSITION_P = 0.95  # 1/s
 
 def is_partial(setpoint: Setpoint) -> bool:
     """Some axis of a vector is left out."""
-    vectors = (setpoint.pos_ned, setpoint.v_ned, setpoint.a_ned)
-    return any(isnan(part) for vector in vectors if vector is not None for part in vector)
+    for vector in (setpoint.pos_ned, setpoint.v_ned, setpoint.a_ned):
+        if vector is not None and (isnan(vector[0]) or isnan(vector[1]) or isnan(vector[2])):
+            return True
+    return False
 
 
 def every_axis_is_given(setpoint: Setpoint) -> bool:

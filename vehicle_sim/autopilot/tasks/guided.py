@@ -98,7 +98,7 @@ class Guided:
 
     done = True
 
-    __slots__ = ("_braking", "_hold", "_parameters", "_rules", "_stream", "_takeoff")
+    __slots__ = ("_braking", "_hold", "_limits", "_parameters", "_rules", "_stream", "_takeoff")
 
     def __init__(self, parameters: Parameters, stream: SetpointStream) -> None:
         self._parameters = parameters
@@ -107,6 +107,7 @@ class Guided:
         self._hold: Vec3 | None = None
         self._braking = False
         self._takeoff: TakeOff | None = None
+        self._limits: tuple[MotionLimits, MotionLimits] | None = None  # made of which, and for it
 
     @property
     def landed_word(self) -> Landed:
@@ -202,12 +203,16 @@ class Guided:
         """PX4 flies what it is told, as far as it ever flies; not at its cruise speed."""
         if not self._rules.setpoints_pass_cruise_speed:
             return s.limits
-        return replace(
-            s.limits,
-            speed_m_s=self._parameters.get("MPC_XY_VEL_MAX"),
-            climb_m_s=self._parameters.get("MPC_Z_VEL_MAX_UP"),
-            descend_m_s=self._parameters.get("MPC_Z_VEL_MAX_DN"),
-        )
+        # The situation's are made anew with every change of a parameter.
+        if self._limits is None or self._limits[0] is not s.limits:
+            limits = replace(
+                s.limits,
+                speed_m_s=self._parameters.get("MPC_XY_VEL_MAX"),
+                climb_m_s=self._parameters.get("MPC_Z_VEL_MAX_UP"),
+                descend_m_s=self._parameters.get("MPC_Z_VEL_MAX_DN"),
+            )
+            self._limits = s.limits, limits
+        return self._limits[1]
 
     def _timed_out(self, setpoint: AnySetpoint, wall_ns: int) -> bool:
         if not self._rules.brakes_after_last_setpoint:
