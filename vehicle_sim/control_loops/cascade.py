@@ -14,7 +14,6 @@ from math import sqrt
 from vehicle_sim.control_loops.believed import D_FILTER_S, Believed
 from vehicle_sim.control_loops.flight import BY_RATES, Flight
 from vehicle_sim.estimation.estimated import Estimated
-from vehicle_sim.numerics.kernel import kernel
 
 _RATE_SHARE = 0.55  # of 1 / motor lag
 _ATTITUDE_SHARE = 0.41  # of the rate gain
@@ -31,7 +30,6 @@ def tune(flight: Flight, believed: Believed) -> None:
     flight.kp_roll = flight.kp_pitch = attitude
 
 
-@kernel
 def stabilise(f: Flight, est: Estimated, believed: Believed) -> None:
     """Attitude and rate loops and the mixer, by the estimate: leaves `u1 .. u4`."""
     # q_error = conj(q) q_setpoint; its vector part is half the turn that is missing.

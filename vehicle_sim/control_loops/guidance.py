@@ -14,7 +14,6 @@ from vehicle_sim.control_loops.trajectory import move_goal, move_reference
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.angles import sincos
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
-from vehicle_sim.numerics.kernel import kernel
 
 _INTEGRAL_TILT = 0.7  # of the steepest tilt, for each axis
 _UNWIND = 2.0
@@ -41,7 +40,6 @@ _LAND_LAG_M = 0.2
 _LAND_LAG_M_S = 0.2
 
 
-@kernel
 def guide(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     """All of it, once."""
     move_goal(f, dt_s)
@@ -51,7 +49,6 @@ def guide(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     feel_ground(f, est, believed, dt_s)
 
 
-@kernel
 def turn(f: Flight, dt_s: float) -> None:
     """The heading setpoint goes on: to its goal, slower towards the end, or for ever."""
     left = f.yaw_left_rad
@@ -68,7 +65,6 @@ def turn(f: Flight, dt_s: float) -> None:
     f.yaw_rate_rad_s = rate
 
 
-@kernel
 def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     """Position and velocity loops, then the attitude and the collective that they need."""
     err_n = f.ref_vel_n + f.kp_pos_xy * (f.ref_n - est.pos_n) - est.vel_n
@@ -152,7 +148,6 @@ def follow(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     f.collective_n = low if wanted < low else high if wanted > high else wanted
 
 
-@kernel
 def feel_ground(f: Flight, est: Estimated, believed: Believed, dt_s: float) -> None:
     """Land detector: how long the vehicle wants to descend, does not, and hardly carries itself.
 

@@ -16,7 +16,6 @@ from typing import Final
 
 from vehicle_sim.control_loops.flight import ACCELERATE, AT_VELOCITY, TO, Flight
 from vehicle_sim.estimation.estimated import Estimated
-from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.vectors import Vec3
 
 QUICK_M_S3: Final = 30.0
@@ -62,7 +61,6 @@ def slowed(v_ned: Vec3, limits: MotionLimits, top_m_s: float) -> Vec3:
     return (n * scale, e * scale, min(limits.descend_m_s, max(-limits.climb_m_s, d)))
 
 
-@kernel
 def approach_speed(distance_m: float, accel_m_s2: float, approach_p: float) -> float:
     """The speed at `distance_m` from a goal from which one can still stop there.
 
@@ -76,14 +74,12 @@ def approach_speed(distance_m: float, accel_m_s2: float, approach_p: float) -> f
     )
 
 
-@kernel
 def approach_fall(speed_m_s: float, accel_m_s2: float, approach_p: float) -> float:
     """How much slower `approach_speed` is a metre nearer, where it is `speed_m_s` [1/s]."""
     near = approach_p * speed_m_s <= accel_m_s2
     return approach_p if near else accel_m_s2 / speed_m_s
 
 
-@kernel
 def speed_by_jerk(distance_m: float, accel_m_s2: float, jerk_m_s3: float) -> float:
     """PX4's speed at `distance_m` from a goal (`computeMaxSpeedFromDistance`, by memory): one that
     it can still brake after the acceleration has been reversed at that jerk."""
@@ -110,7 +106,6 @@ def stopping_point(f: Flight, est: Estimated, limits: MotionLimits) -> Vec3:
     return (f.ref_n + vn * lead, f.ref_e + ve * lead, f.ref_d + vd * lead_d)
 
 
-@kernel
 def move_goal(f: Flight, dt_s: float) -> None:
     """A goal that moves: along a line, or round a centre.
 
@@ -135,7 +130,6 @@ def move_goal(f: Flight, dt_s: float) -> None:
     f.goal_vel_e = vel_e
 
 
-@kernel
 def move_reference(f: Flight, est: Estimated, dt_s: float) -> None:
     """Move the reference on by `dt_s`, pulled by the demand."""
     to_flat = f.horizontal == TO

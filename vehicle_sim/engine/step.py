@@ -19,7 +19,6 @@ from vehicle_sim.control_loops.flight import Flight
 from vehicle_sim.control_loops.guidance import guide
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.estimation.estimator import align, estimate
-from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.noise import key_of
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.constants import Plant
@@ -102,7 +101,6 @@ class Seat:
         return Onboard(engine.steps, blocks.sensed, blocks.est, blocks.flight, engine.believed)
 
 
-@kernel
 def live(
     body: Body,
     sensed: Sensed,
@@ -136,24 +134,24 @@ def restart(blocks: Blocks, believed: Believed) -> None:
     """The autopilot's computer starts anew: it knows nothing, and its motors stop."""
     align(blocks.est)
     fresh = Flight()
-    for name in Flight.__slots__:
-        setattr(blocks.flight, name, getattr(fresh, name))
+    for field in fields(Flight):
+        setattr(blocks.flight, field.name, getattr(fresh, field.name))
     tune(blocks.flight, believed)
 
 
-_LETTERS: Final = {"float": "d", "int": "Q", "bool": "?"}
+_LETTERS: Final[dict[type, str]] = {float: "d", int: "Q", bool: "?"}
 
 
 def state_bytes(blocks: Blocks) -> bytes:
     """The whole numeric state of a vehicle, little-endian: equal bytes are an equal flight."""
     parts = (
-        (Body, blocks.body),
-        (Sensed, blocks.sensed),
-        (Estimated, blocks.est),
-        (Flight, blocks.flight),
+        (Body(), blocks.body),
+        (Sensed(), blocks.sensed),
+        (Estimated(), blocks.est),
+        (Flight(), blocks.flight),
     )
     return b"".join(
-        struct.pack("<" + _LETTERS[str(field.type)], getattr(block, field.name))
-        for kind, block in parts
-        for field in fields(kind)
+        struct.pack("<" + _LETTERS[type(getattr(fresh, field.name))], getattr(block, field.name))
+        for fresh, block in parts
+        for field in fields(fresh)
     )

@@ -12,7 +12,7 @@ from typing import Final
 
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
-from vehicle_sim.numerics.kernel import anywhere, kernel
+from vehicle_sim.numerics.kernel import anywhere
 from vehicle_sim.plant.sensed import Sensed
 from vehicle_sim.plant.sensors import GPS_S, SLOW_S, to_body
 
@@ -66,13 +66,11 @@ _CLIMB_GATE_M_S: Final = 5.0
 _SMOOTH: Final = 0.2
 
 
-@kernel
 def _within(value: float, top: float) -> float:
     low = value if value < top else top
     return low if low > -top else -top
 
 
-@kernel
 def _turn(est: Estimated, n: float, e: float, d: float, learn: float) -> None:
     """Turn the attitude by the small angle `n, e, d` [rad, NED].
 
@@ -98,7 +96,6 @@ def _turn(est: Estimated, n: float, e: float, d: float, learn: float) -> None:
     est.qz = qz * scale
 
 
-@kernel
 def hold_attitude(est: Estimated, sensed: Sensed) -> None:
     """Level by gravity, where GPS does not, and yaw by the magnetic field, at 25 Hz."""
     n, e, d = est.acc_n, est.acc_e, est.acc_d - GRAVITY_M_S2
@@ -135,7 +132,6 @@ def hold_attitude(est: Estimated, sensed: Sensed) -> None:
     est.mag_s = 0.0 if heard else est.mag_s + SLOW_S
 
 
-@kernel
 def _align(est: Estimated, sensed: Sensed, aligning: bool, strength: float) -> None:
     """Standing still: attitude from gravity and the field at once, biases by a running mean.
 
@@ -189,7 +185,6 @@ def _align(est: Estimated, sensed: Sensed, aligning: bool, strength: float) -> N
     est.vel_d = 0.0 if aligning else est.vel_d
 
 
-@kernel
 def hold_height(est: Estimated, sensed: Sensed) -> None:
     """Height and climb by the barometer, at 25 Hz."""
     aligning = est.age_s < ALIGNED_S - SLACK_S
@@ -212,7 +207,6 @@ def hold_height(est: Estimated, sensed: Sensed) -> None:
     est.baro_s = 0.0 if heard else est.baro_s + SLOW_S
 
 
-@kernel
 def hold_position(est: Estimated, sensed: Sensed) -> None:
     """A fix, if there is one, against the estimate of when it was taken, at 5 Hz."""
     off_n = sensed.gps_n - est.then_n

@@ -8,7 +8,7 @@ accelerating, but by what a wrong tilt does to the velocity that GPS sees.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import inf, sqrt
 from typing import Final
 
@@ -22,7 +22,6 @@ from vehicle_sim.estimation.corrections import (
 )
 from vehicle_sim.estimation.estimated import Estimated
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
-from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.plant.sensed import Sensed
 from vehicle_sim.plant.sensors import (
     BARO_AT,
@@ -50,11 +49,10 @@ _MAG_LOST_S: Final = 1.0
 def align(est: Estimated) -> None:
     """Power-up: forget everything; attitude after `ALIGNED_S`, a good position at `READY_S`."""
     fresh = Estimated()
-    for name in Estimated.__slots__:
-        setattr(est, name, getattr(fresh, name))
+    for field in fields(Estimated):
+        setattr(est, field.name, getattr(fresh, field.name))
 
 
-@kernel
 def estimate(est: Estimated, sensed: Sensed, k: int) -> None:
     """One step, after the sensors'."""
     rate_x = sensed.gyro_x - est.gyro_bias_x
@@ -99,7 +97,6 @@ def estimate(est: Estimated, sensed: Sensed, k: int) -> None:
         _correct(est, sensed, k)
 
 
-@kernel
 def _correct(est: Estimated, sensed: Sensed, k: int) -> None:
     """By the sensors that do not answer in every step."""
     if k % MAG_EVERY == 0:

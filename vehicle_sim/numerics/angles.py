@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from vehicle_sim.numerics.kernel import kernel
 
-
-@kernel
 def sincos(angle_rad: float) -> tuple[float, float]:
     """Sine and cosine of an angle within -pi .. pi, to better than 1e-12.
 

@@ -11,13 +11,12 @@ import inspect
 import textwrap
 from collections.abc import Callable
 from dataclasses import fields
-from math import sqrt
 from typing import Any, Final, Generic, ParamSpec, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_sim.numerics.kernel import KERNELS
+from vehicle_sim.numerics.kernel import anywhere
 
 B = TypeVar("B")
 P = ParamSpec("P")
@@ -82,10 +81,9 @@ def batched(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _compile(function: Callable[..., object]) -> Callable[..., object]:
-    if function not in KERNELS:
-        raise TypeError(f"{function.__qualname__} is not a kernel")
     source = textwrap.dedent(inspect.getsource(function))
-    tree = _Batch().visit(ast.parse(source))
+    names = function.__globals__
+    tree = _Batch({name for name in names if _is_kernel(names[name])}).visit(ast.parse(source))
     ast.increment_lineno(tree, function.__code__.co_firstlineno - 1)
     definition = tree.body[0]
     definition.decorator_list = []
@@ -95,18 +93,18 @@ def _compile(function: Callable[..., object]) -> Callable[..., object]:
     ast.fix_missing_locations(tree)
     space: dict[str, Any] = {
         name: batched(value) if _is_kernel(value) else value
-        for name, value in function.__globals__.items()
+        for name, value in names.items()
         if name in function.__code__.co_names
     }
-    if space.get("sqrt") is sqrt:
-        space["sqrt"] = np.sqrt
-    space |= {"anywhere": _anywhere, "_where": np.where, "_keep": _keep, "_float": _float}
+    space |= {"sqrt": np.sqrt, "anywhere": _anywhere}
+    space |= {"_where": np.where, "_keep": _keep, "_float": _float}
     exec(compile(tree, inspect.getfile(function), "exec"), space)
     return cast(Callable[..., object], space[function.__name__])
 
 
 def _is_kernel(value: object) -> bool:
-    return inspect.isfunction(value) and value in KERNELS
+    """What may be called: functions of Python, of which `anywhere` is written anew here."""
+    return inspect.isfunction(value) and value is not anywhere
 
 
 def _anywhere(condition: npt.NDArray[np.bool_]) -> bool:
@@ -124,6 +122,10 @@ def _float(value: npt.NDArray[np.uint64]) -> npt.NDArray[np.float64]:
 
 class _Batch(ast.NodeTransformer):
     """Python's words for one value into numpy's for many."""
+
+    def __init__(self, kernels: set[str]) -> None:
+        """By what names other kernels are called."""
+        self._known = kernels | {"sqrt", "anywhere", "float"}
 
     def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
         self.generic_visit(node)
@@ -149,11 +151,13 @@ class _Batch(ast.NodeTransformer):
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
         self.generic_visit(node)
-        if isinstance(node.func, ast.Name):
-            if node.func.id in ("min", "max"):
-                raise SyntaxError(f"{node.func.id}() cannot be batched; write a if c else b")
-            if node.func.id == "float":
-                node.func.id = "_float"
+        called = ast.unparse(node.func)
+        if called in ("min", "max"):
+            raise SyntaxError(f"{called}() cannot be batched; write a if c else b")
+        if called == "float":
+            return _call("_float", *node.args)
+        if called not in self._known:
+            raise SyntaxError(f"{called}() cannot be batched: it is no kernel")
         return node
 
     def visit_Assign(self, node: ast.Assign) -> ast.stmt:

@@ -9,15 +9,12 @@ from __future__ import annotations
 
 from typing import Final
 
-from vehicle_sim.numerics.kernel import kernel
-
 _MASK: Final = 0xFFFFFFFFFFFFFFFF
 _GOLDEN: Final = 0x9E3779B97F4A7C15
 _SQRT3_OVER_65536: Final = 1.7320508075688772 / 65536.0
 _SQRT12_OVER_65536: Final = 3.4641016151377544 / 65536.0
 
 
-@kernel
 def mix64(x: int) -> int:
     """A bijection of 64-bit integers in which every input bit sways every output bit."""
     x = ((x ^ (x >> 30)) * 0xBF58476D1CE4E5B9) & _MASK
@@ -32,19 +29,16 @@ def key_of(seed: int, vehicle: int, source: int) -> int:
     return mix64((key ^ source) + _GOLDEN & _MASK)
 
 
-@kernel
 def bits(key: int, step: int) -> int:
     """64 random bits, the same for ever for one key and step."""
     return mix64((key + (step * _GOLDEN & _MASK)) & _MASK)
 
 
-@kernel
 def uniform(part: int) -> float:
     """Mean 0, variance 1, evenly spread over +-1.73; `part` is 16 of the random bits."""
     return (float(part) - 32767.5) * _SQRT12_OVER_65536
 
 
-@kernel
 def normal(key: int, step: int) -> float:
     """Mean 0, variance 1, nearly normal, never beyond 3.5: the sum of four uniforms."""
     x = bits(key, step)

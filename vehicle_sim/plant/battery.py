@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.cell_voltage import cell_v
 from vehicle_sim.plant.constants import Plant
@@ -21,7 +20,6 @@ _WEAKEST: Final = 0.25
 """Below this part of the full voltage the motors draw no more for it."""
 
 
-@kernel
 def drain(body: Body, plant: Plant) -> None:
     """`BATTERY_EVERY` steps of the battery under the motors' load.
 
@@ -45,7 +43,6 @@ def drain(body: Body, plant: Plant) -> None:
     settle(body, plant)
 
 
-@kernel
 def settle(body: Body, plant: Plant) -> None:
     """Voltage and strength for the charge that is left and the current that flows.
 

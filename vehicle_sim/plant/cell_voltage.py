@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-from vehicle_sim.numerics.kernel import kernel
-
 CURVE: Final = (
     (3.00, 0.0), (3.45, 0.05), (3.60, 0.10), (3.70, 0.20), (3.78, 0.40), (3.88, 0.60),
     (4.02, 0.80), (4.20, 1.0),
@@ -13,7 +11,6 @@ CURVE: Final = (
 """Volts and charge (0..1), straight in between: the usual shape of a LiPo's curve."""
 
 
-@kernel
 def cell_v(remaining: float) -> float:
     """`CURVE` as a kernel: volts for the charge (0..1) that is left."""
     return (

@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import sqrt
 from typing import TypeAlias
 
-from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.constants import Plant
 
@@ -13,7 +12,6 @@ Push: TypeAlias = tuple[float, float, float, float, float, float]
 """Force north, east, down [N] and torque about body x, y, z [N m]."""
 
 
-@kernel
 def stand(body: Body, plant: Plant) -> Push:
     """What the ground does to `body` in this step.
 
@@ -125,7 +123,6 @@ def stand(body: Body, plant: Plant) -> Push:
     )
 
 
-@kernel
 def _foot(
     depth: float,
     v_n: float,

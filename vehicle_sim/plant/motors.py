@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.constants import Plant
 
 
-@kernel
 def spin(
     body: Body, u1: float, u2: float, u3: float, u4: float, sink: float, plant: Plant
 ) -> tuple[float, float, float, float]:

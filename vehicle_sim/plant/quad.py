@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from vehicle_sim.numerics.kernel import anywhere, kernel
+from vehicle_sim.numerics.kernel import anywhere
 from vehicle_sim.plant.battery import BATTERY_EVERY, drain, settle
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.constants import Plant
@@ -14,7 +14,6 @@ from vehicle_sim.plant.rigid_body import move
 from vehicle_sim.plant.wind import WIND_EVERY, blow
 
 
-@kernel
 def begin(body: Body, gust_key: int, plant: Plant) -> None:
     """Make a fresh block a vehicle on the ground: battery full, wind as it is wanted."""
     body.gust_key = gust_key
@@ -28,7 +27,6 @@ def begin(body: Body, gust_key: int, plant: Plant) -> None:
     body.air_d = body.wind_d
 
 
-@kernel
 def advance(body: Body, u1: float, u2: float, u3: float, u4: float, plant: Plant, k: int) -> None:
     """Step number `k`, of `plant.dt_s`, with the motors commanded to `u` (0..1 of what the
     battery can turn).  The ground is the plane down = 0, where the feet stand.

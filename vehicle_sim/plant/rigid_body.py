@@ -9,14 +9,13 @@ from __future__ import annotations
 from math import sqrt
 
 from vehicle_sim.numerics.gravity import GRAVITY_M_S2
-from vehicle_sim.numerics.kernel import anywhere, kernel
+from vehicle_sim.numerics.kernel import anywhere
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.constants import Plant
 
 _MASS_LEAST = 0.25  # of the data sheet's: a negative payload takes no more away
 
 
-@kernel
 def move(
     body: Body,
     force_n: float,

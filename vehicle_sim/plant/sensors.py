@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from math import cos, radians, sin, sqrt
 from typing import Final
 
-from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.noise import key_of
 from vehicle_sim.plant.battery import BATTERY_EVERY
 from vehicle_sim.plant.body import Body
@@ -182,7 +181,6 @@ def switch_on(sensed: Sensed, seed: int, vehicle: int, lat_deg: float, grade: Se
 _FIRST_SOURCE: Final = 16  # noise sources below are the physics' and the faults'
 
 
-@kernel
 def three(key: int, counter: int) -> tuple[float, float, float]:
     """Three numbers of mean 0 and variance 1, each the sum of two uniforms, from one mixing:
     `mix64`, written out, as every step asks twice."""
@@ -198,7 +196,6 @@ def three(key: int, counter: int) -> tuple[float, float, float]:
     )
 
 
-@kernel
 def to_body(
     qw: float, qx: float, qy: float, qz: float, n: float, e: float, d: float
 ) -> tuple[float, float, float]:
@@ -213,14 +210,12 @@ def to_body(
     )
 
 
-@kernel
 def _within(value: float, top: float) -> float:
     """Clipped; what is not a number is the top."""
     low = value if value < top else top
     return low if low > -top else -top
 
 
-@kernel
 def sense(sensed: Sensed, body: Body, grade: SensorGrade, k: int) -> None:
     """What the sensors say of `body` after step `k`."""
     counter = k * _GOLDEN & _MASK
@@ -257,7 +252,6 @@ def sense(sensed: Sensed, body: Body, grade: SensorGrade, k: int) -> None:
         _sense_slowly(sensed, body, grade, k, counter)
 
 
-@kernel
 def _sense_slowly(sensed: Sensed, body: Body, grade: SensorGrade, k: int, counter: int) -> None:
     """Those that do not answer in every step."""
     if k % MAG_EVERY == 0:
@@ -274,7 +268,6 @@ def _sense_slowly(sensed: Sensed, body: Body, grade: SensorGrade, k: int, counte
         _walk(sensed, grade, counter)
 
 
-@kernel
 def _shake(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None:
     """Rotors out of balance shake the frame: with the square of their speed, and without a mean.
 
@@ -292,7 +285,6 @@ def _shake(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None
     sensed.shaken_z = z
 
 
-@kernel
 def _feel_field(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None:
     """The Earth's field in FRD, with what is left of hard iron after a calibration."""
     m_x, m_y, m_z = to_body(body.qw, body.qx, body.qy, body.qz, sensed.field_n, 0.0, sensed.field_d)
@@ -308,7 +300,6 @@ def _feel_field(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) ->
     sensed.mag_fresh = here
 
 
-@kernel
 def _feel_pressure(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None:
     """Height by pressure: it lags (first order), drifts with the weather, and is noisy."""
     white, stir, _ = three(sensed.baro_key, counter)
@@ -321,7 +312,6 @@ def _feel_pressure(sensed: Sensed, body: Body, grade: SensorGrade, counter: int)
     sensed.baro_fresh = here
 
 
-@kernel
 def _take_fix(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None:
     """Position and velocity of now, which the receiver is going to work out."""
     x, y, z = three(sensed.gps_wander_key, counter)
@@ -348,7 +338,6 @@ def _take_fix(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> N
     sensed.taken_vel_d = _within(body.vel_d, _FAST_M_S) + z * white
 
 
-@kernel
 def _give_fix(sensed: Sensed) -> None:
     """The fix comes out of the receiver; without satellites the last one stays, unfresh."""
     here = not sensed.gps_lost
@@ -362,7 +351,6 @@ def _give_fix(sensed: Sensed) -> None:
     sensed.gps_fresh = here
 
 
-@kernel
 def measure_power(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) -> None:
     """The power module and the ESCs, as they are read: without a filter, as ArduPilot reads them.
 
@@ -384,14 +372,12 @@ def measure_power(sensed: Sensed, body: Body, grade: SensorGrade, counter: int) 
     sensed.esc_4 = _at_least_0(body.s4 * body.health_4, (x + y) * (0.7 * white))
 
 
-@kernel
 def _at_least_0(value: float, noise: float) -> float:
     """With noise where something turns; what stands still is 0."""
     noisy = value + noise
     return noisy if value > 0.0 and noisy > 0.0 else 0.0
 
 
-@kernel
 def _walk(sensed: Sensed, grade: SensorGrade, counter: int) -> None:
     """A second of random walk of the biases."""
     x, y, z = three(sensed.gyro_walk_key, counter)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from math import sqrt
 from typing import Final
 
-from vehicle_sim.numerics.kernel import kernel
 from vehicle_sim.numerics.noise import bits, uniform
 from vehicle_sim.plant.body import Body
 from vehicle_sim.plant.constants import Plant
@@ -31,7 +30,6 @@ _SLOWEST_M_S: Final = 1.0
 """Turbulence lives on where nothing moves through it: it passes at this speed at least."""
 
 
-@kernel
 def blow(body: Body, plant: Plant, k: int) -> None:
     """`WIND_EVERY` steps of the air; `k` is the step number, which the noise draws by.
 

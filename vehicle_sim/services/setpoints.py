@@ -162,7 +162,8 @@ def _vector(mask: int, ignore: int, value: Vec3, profile: Profile) -> Vec3 | Non
     ignored = mask & ignore
     if ignored == ignore or (ignored and profile.whole_masks):
         return None
-    if not ignored and all([abs(part) <= FARTHEST for part in value]):
+    x, y, z = value
+    if not ignored and abs(x) <= FARTHEST and abs(y) <= FARTHEST and abs(z) <= FARTHEST:
         return value
     lowest = ignore & -ignore
     used = [not ignored & lowest << axis for axis in range(3)]

@@ -11,7 +11,7 @@ import pytest
 
 from tests.unit.model.bodies import PLANTS, standing, state_bytes
 from vehicle_sim.numerics import noise
-from vehicle_sim.numerics.kernel import KERNELS
+from vehicle_sim.numerics.lanes import batched
 from vehicle_sim.plant import battery, cell_voltage, ground, motors, quad, rigid_body, wind
 from vehicle_sim.plant.quad import advance
 
@@ -62,5 +62,5 @@ def test_each_function_of_the_step_is_a_kernel(module: ModuleType) -> None:
         if f.__module__ == module.__name__
     ]
     assert own
-    # It is asked by whoever begins, and not by the step.
-    assert {f.__name__ for f in own if f not in KERNELS} <= {"key_of"}
+    for function in own:
+        batched(function)  # raises for what is none
