@@ -10,7 +10,7 @@ from gcs.flight_report.number_format import utc
 from gcs.flight_report.summary import (
     main_trouble,
     vehicle_name,
-    what_happened,
+    what_all_did,
     what_went_wrong,
 )
 
@@ -58,7 +58,7 @@ def report_json(flight: Flight) -> bytes:
         utc(flight.start_ns),
         flight.seconds,
         flight.messages,
-        what_happened(flight, main),
+        what_all_did(flight),
         [_vehicle(flight, vehicle) for vehicle in vehicles],
     )
     return msgspec.json.encode(report)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
 
 from gcs.flight_report.findings.finding import CAUSE_WITHIN_S, Finding, Level, cause_of
@@ -43,6 +44,32 @@ def what_happened(flight: Flight, vehicle: VehicleFlight | None) -> str:
         parts.append(f"in {totals.take_offs} flights")
     end = "and landed" if totals.landed_s is not None else "and was in the air at the record's end"
     return f"{', '.join(parts)}, {end}."
+
+
+def what_all_did(flight: Flight) -> str:
+    """The same of each vehicle that the report is about, with their numbers where it is several."""
+    shown = flight.shown_vehicles()
+    if len(shown) < 2:
+        return what_happened(flight, shown[0] if shown else None)
+    return " ".join(f"Vehicle {each.sysid}: {what_happened(flight, each)}" for each in shown)
+
+
+def lines_of(flight: Flight) -> Iterator[str]:
+    """What the whole report comes to, for a terminal: of each vehicle that it is about what
+    happened and what went wrong, then who else is in the record."""
+    shown = flight.shown_vehicles()
+    yield from filter(None, [what_is_damaged(flight)])
+    if not shown:
+        yield what_happened(flight, None)
+    for vehicle in shown:
+        name = f"Vehicle {vehicle.sysid}: " if len(shown) > 1 else ""
+        yield f"{name}{what_happened(flight, vehicle)}"
+        yield f"{name}{what_went_wrong(flight, vehicle)}"
+        yield from filter(None, [what_was_before(vehicle)])
+    others = other_vehicles(flight, shown)
+    if others and len(shown) == 1:
+        yield f"This is vehicle {shown[0].sysid}; --vehicle chooses another one."
+    yield from (f"Also in the record: {line}" for line in others)
 
 
 def what_is_damaged(flight: Flight) -> str:

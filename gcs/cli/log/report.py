@@ -47,13 +47,7 @@ def report(
     from gcs.flight_report.findings_json import report_json
     from gcs.flight_report.render import page
     from gcs.flight_report.scan import scan
-    from gcs.flight_report.summary import (
-        other_vehicles,
-        what_happened,
-        what_is_damaged,
-        what_was_before,
-        what_went_wrong,
-    )
+    from gcs.flight_report.summary import lines_of
 
     file = one_record(file, last=last)
     if output is None and not as_json:
@@ -73,19 +67,8 @@ def report(
     if as_json:
         click.echo(report_json(flight).decode())
         return
-    shown = flight.main_vehicle()
-    said = (
-        what_happened(flight, shown),
-        what_is_damaged(flight),
-        what_went_wrong(flight, shown),
-        what_was_before(shown),
-    )
-    for line in filter(None, said):
+    for line in lines_of(flight):
         click.echo(line)
-    if shown is not None and (others := other_vehicles(flight, [shown])):
-        click.echo(f"This is vehicle {shown.sysid}; --vehicle chooses another one.")
-        for line in others:
-            click.echo(f"Also in the record: {line}")
     click.echo(f"{output}: open it in a browser")
 
 

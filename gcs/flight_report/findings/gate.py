@@ -33,6 +33,8 @@ LEVELS = {
     "LAND": Level.CRITICAL,
     "TERMINATE": Level.CRITICAL,
 }
+WRONG_AS_CAUTION = frozenset({"too_close"})
+"""Conditions of which a caution in flight is a thing that went wrong, not a note."""
 _CONDITION = re.compile(
     r"^(?:vehicle (\d+): )?(CAUTION|HOLD|RETURN|LAND|TERMINATE): ([a-z_]+)(?:: (.*))?$", re.DOTALL
 )
@@ -118,6 +120,8 @@ class GateDetector:
         if severity not in LEVELS:
             return
         level = LEVELS[severity] if now.armed else Level.NOTE
+        if now.armed and level is Level.NOTE and condition in WRONG_AS_CAUTION:
+            level = Level.WARNING
         title = CONDITIONS.get(condition, condition.replace("_", " "))
         self._found(level, now.t_s, f"the gate called {severity}: {title}", why or condition)
 

@@ -433,12 +433,18 @@ class TestGate:
         (finding,) = found(GateDetector(), [(6.0, line) for line in lines], now).findings
         assert finding.title == "the gate called CAUTION: the vehicle came too close to another one"
 
+    def test_two_vehicles_too_close_in_flight_went_wrong_though_it_is_a_caution(self) -> None:
+        for condition, level in (("too_close", Level.WARNING), ("gps_poor", Level.NOTE)):
+            standing = (ConditionItem(condition, "CAUTION", "vehicle 2: 3 m away"),)
+            told = Machine("MOVING", "reminder", "OURS", "CAUTION", None, standing)
+            assert levels(found(GateDetector(), [(2.0, told)])) == [(2.0, level)]
+
     def test_conditions_of_the_machine_are_told_once_while_they_stand(self) -> None:
         def machine(severity: str) -> Machine:
-            standing = (ConditionItem("too_close", severity, "5 m"),) if severity else ()
+            standing = (ConditionItem("gps_poor", severity, "5 m"),) if severity else ()
             return Machine("MOVING", "reminder", "OURS", severity or "NOMINAL", None, standing)
 
-        line = LogLine(3, "state_and_safety", "CAUTION: too_close: 5 m")
+        line = LogLine(3, "state_and_safety", "CAUTION: gps_poor: 5 m")
         facts: list[tuple[float, Fact]] = [
             (1.0, machine("")),
             (2.0, line),

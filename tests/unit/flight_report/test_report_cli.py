@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from mcap.opcode import Opcode
 
-from gcs.report import PoseItem, StatusItem
+from gcs.report import ConditionItem, FsaItem, PoseItem, RecordItem, StatusItem
 from tests.unit.cli.command_line import gcs
 from tests.unit.flight_report.test_scan import a_flight_that_loses_gps
 from tests.unit.record.flights import MS, a_flight, record, without_a_record_s_head
@@ -49,6 +49,28 @@ def test_another_vehicle_of_a_fleet(tmp_path: Path) -> None:
     html = page.read_text(encoding="utf-8")
     assert "vehicle 2</li>" in html
     assert "Also in the record: Vehicle 1" in html
+
+
+def test_of_a_fleet_every_vehicle_is_told_and_that_two_came_too_close(tmp_path: Path) -> None:
+    upright = (1.0, 0.0, 0.0, 0.0)
+    rows: list[RecordItem] = []
+    for landed in ("ON_GROUND", "IN_AIR", "ON_GROUND"):
+        rows += [StatusItem(n, True, "OFFBOARD", landed, 90.0, 16.0, 9.0, 0.0) for n in (1, 2)]
+        rows += [PoseItem(n, (0.0, 0.0, -5.0), (0.0, 0.0, 0.0), upright) for n in (1, 2)]
+        close = ConditionItem("too_close", "CAUTION", "vehicle 1: 3.0 m away")
+        wrong = (close,) if landed == "IN_AIR" else ()
+        rows.append(FsaItem(2, "HOVERING", 5, "HOVERING", "x", "OURS", "CAUTION", None, wrong))
+    path = record(tmp_path, rows, step_ns=400 * MS)
+    said = gcs("log", "report", path).output.splitlines()
+    assert [line[:36] for line in said if "flew for" in line] == [
+        "Vehicle 1: The vehicle flew for 2 s,",
+        "Vehicle 2: The vehicle flew for 2 s,",
+    ]
+    (wrong_line,) = [line for line in said if "too close" in line]
+    assert wrong_line.startswith("Vehicle 2: At ")
+    told = json.loads(gcs("log", "report", path, "--json").output)
+    assert told["what_happened"].count("flew for") == 2
+    assert "too close" in told["vehicles"][1]["what_went_wrong"]
 
 
 def test_a_vehicle_that_is_not_there(flight: Path) -> None:
