@@ -38,12 +38,13 @@ def _group(part: Part, example: str) -> click.Group:
     @group.command(
         epilog=f"Example: gcs {part} check {example}\n\n"
         "Exit codes: 0 nothing is wrong, 4 the file is wrong, 6 the policy refuses it.",
-        help=f"Check the {what} of a file, without a vehicle.",
+        help=f"Check the {what} of a file, without a vehicle."
+        + (" Without FILE the policy's own fence." if part == "fence" else ""),
     )
-    @click.argument("file", type=MISSION_FILE)
+    @click.argument("file", type=MISSION_FILE, required=part == "rally")
     @with_options(AUTOPILOT, POLICY, HOME, AS_JSON)
     def check(
-        file: str,
+        file: str | None,
         autopilot: AutopilotName | None,
         policy: str,
         home: Geodetic | None,
@@ -53,9 +54,12 @@ def _group(part: Part, example: str) -> click.Group:
 
         from gcs.cli.mission.check import check_plan
         from gcs.cli.mission.report import part_json, part_lines
+        from gcs.plan.model import Plan
 
-        checked = check_plan(_only(part, file, autopilot), autopilot, policy, home)
-        checked = replace(checked, findings=(*checked.findings, *_heights(checked.plan)))
+        plan = Plan("", None, home) if file is None else _only(part, file, autopilot)
+        checked = check_plan(plan, autopilot, policy, home)
+        found = () if file is None else (*checked.findings, *_heights(checked.plan))
+        checked = replace(checked, findings=found)
         click.echo(part_json(checked) if as_json else "\n".join(part_lines(checked)))
         return checked.exit_code
 

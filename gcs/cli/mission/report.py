@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from gcs.cli.mission import fence_facts
 from gcs.cli.mission.check import Checked
 from gcs.cli.mission.route import Route
 from gcs.cli.mission.route_text import route_lines
@@ -192,7 +193,10 @@ def _leg_json(verdict: LegVerdict) -> dict[str, object]:
 def part_lines(checked: Checked) -> Iterator[str]:
     """Of a fence or rally points alone: findings, then the verdict."""
     plan = checked.plan
-    yield f"{plan.source}: {', '.join(held(plan))}, for {checked.autopilot}"
+    if plan.source:
+        yield f"{plan.source}: {', '.join(held(plan))}, for {checked.autopilot}"
+    if not plan.rally:
+        yield from fence_facts.lines(checked)
     for finding in checked.findings:
         yield from finding_lines(plan, finding)
     for refusal in checked.bad_landings:
@@ -219,6 +223,7 @@ def part_json(checked: Checked) -> str:
         "home": _home_json(checked.home),
         "zones": len(plan.fence.zones),
         "rally_points": len(plan.rally),
+        **({} if plan.rally else fence_facts.facts_json(checked)),
         "findings": [finding_json(finding) for finding in checked.findings],
         "problems": [landing.sentence for landing in checked.bad_landings],
         "verdict": _part_verdict(checked),

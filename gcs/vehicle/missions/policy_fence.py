@@ -11,7 +11,6 @@ no later than the policy counts on, which is `[stream] deadman_s`.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -23,8 +22,8 @@ from gcs.gate.geometry import Circle as PlacedCircle
 from gcs.gate.geometry import Point
 from gcs.gate.geometry import Polygon as PlacedPolygon
 from gcs.gate.policy.policy import Policy
-from gcs.gate.policy.zonespec import HOME_EN, CircleSpec, ZoneSpec
 from gcs.gate.refusal import Code, Refusal
+from gcs.plan.kept_on_board import as_zones, not_kept
 from gcs.plan.model import Circle, Fence, LatLon, Polygon, Zone
 from gcs.protocol.fence_parameters import Breach, KeptFence
 from gcs.vehicle.talk.telemetry import Telemetry
@@ -55,11 +54,11 @@ def vehicle_fence(policy: Policy, telemetry: Telemetry) -> VehicleFence | Refusa
     placed = build_zones(policy.fence, home_ned, projection)
     if isinstance(placed, Refusal):
         return placed
-    both = tuple(zip(policy.fence, placed, strict=True))
+    uploaded = as_zones(policy)
     zones = tuple(
         _on_earth(zone, projection)
-        for spec, zone in both
-        if not _is_cylinder(spec) and not _has_end(spec)
+        for spec, zone in zip(policy.fence, placed, strict=True)
+        if spec in uploaded
     )
     inside = [zone for zone in placed if zone.inclusion]
     home_en, home_up_m = (home_ned[1], home_ned[0]), -home_ned[2]
@@ -71,8 +70,7 @@ def vehicle_fence(policy: Policy, telemetry: Telemetry) -> VehicleFence | Refusa
         breach,
         policy.stream.deadman_s,
     )
-    several = autopilot == "px4" and sum(zone.inclusion for zone in zones) > 1
-    return VehicleFence(Fence(zones), kept, tuple(_not_kept(policy, breach, autopilot, several)))
+    return VehicleFence(Fence(zones), kept, tuple(not_kept(policy, autopilot)))
 
 
 def _on_earth(zone: PlacedZone, projection: Projection) -> Zone:
@@ -94,29 +92,3 @@ def _reach_m(zone: PlacedZone, home_en: Point) -> float:
             return math.dist(centre_en, home_en) + radius_m
         case PlacedPolygon(corners_en):
             return max(math.dist(corner, home_en) for corner in corners_en)
-
-
-def _is_cylinder(spec: ZoneSpec) -> bool:
-    """About home, and to stay in: the vehicle's circle by parameter."""
-    circle = isinstance(spec, CircleSpec) and spec.inclusion and spec.centre == HOME_EN
-    return circle and spec.frame == "home"
-
-
-def _has_end(spec: ZoneSpec) -> bool:
-    """To stay out of, and it ends somewhere above or below: where the gate lets the vehicle fly
-    over it, a vehicle's zone, which has no heights, would stop it."""
-    return not spec.inclusion and (spec.floor_up_m, spec.ceiling_up_m) != (None, None)
-
-
-def _not_kept(policy: Policy, breach: Breach, autopilot: str, several: bool) -> Iterator[str]:
-    for spec in policy.fence:
-        if _has_end(spec):
-            yield f"zone '{spec.name}', to stay out of up to a height: its zones have no heights"
-        elif spec.inclusion and spec.floor_up_m is not None and spec.floor_up_m > 0.0:
-            yield f"the floor of zone '{spec.name}' at {spec.floor_up_m:g} m"
-    if policy.min_up_m > 0.0:
-        yield f"min_up_m = {policy.min_up_m:g}"
-    if several:
-        yield "that it stays in every zone: a PX4 before 1.15 is content with one of them"
-    if breach == "terminate" and autopilot == "ardupilot":
-        yield "fence_breached = terminate: it lands"

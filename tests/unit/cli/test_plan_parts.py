@@ -57,6 +57,15 @@ def test_each_sends_its_request(
     ("line", "code", "told"),
     [
         ("fence check fence", 0, "nothing is wrong with it"),
+        (
+            "fence check fence --policy lab",
+            0,
+            "'geoFence.circles[0]', to stay out of: circle of 8 m",
+        ),
+        ("fence check fence", 0, "north, 19600 m2, at all heights; home is inside, 60.0 m from"),
+        ("fence check fence --home 47.4,8.545594,488", 0, "at all heights; home is OUTSIDE, "),
+        ("fence check", 0, "circle of 150 m, from 0 m to 50 m above home; home is inside, 150.0 m"),
+        ("fence check --policy lab", 0, "at most 1000 m from home, -1000 to 120 m above it"),
         ("fence check rally", 4, "none is in this file"),
         ("fence check demo", 4, "hint: it has"),
         ("fence upload demo", 4, "none is in this file"),
@@ -92,3 +101,24 @@ def test_as_json() -> None:
     assert (found["zones"], found["rally_points"], found["exit_code"]) == (3, 0, 0)
     shown = json.loads(gcs("rally", "show", "rally", "--json").output)
     assert shown["rally"] == [[47.398, 8.546, 10.0], [47.3974, 8.5451, 5.0]]
+
+
+HOME = '[[fence]]\nname = "home"\nkind = "circle"\nradius_m = 90.0\n'
+MAST = '[[fence]]\nname = "mast"\nkind = "circle"\ncentre = [60.0, 0.0]\nradius_m = 5.0\n'
+
+
+@pytest.mark.parametrize(
+    ("fence", "told"),
+    [
+        (f"{HOME}floor_up_m = 3.0\n", "all of that but: the floor of zone 'home' at 3 m"),
+        (f"{HOME}{MAST}inclusion = false\nceiling_up_m = 9.0\n", "but: zone 'mast', to stay out"),
+        (f"{HOME}{MAST}inclusion = false\n", "by gcs fence put: all of that\n"),
+    ],
+)
+def test_what_a_vehicle_cannot_keep_of_a_policy_is_told(
+    fence: str, told: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "p.toml"
+    file.write_text(fence)
+    result = gcs("fence", "check", "--policy", file)
+    assert (result.exit_code, told in result.output) == (0, True), result.output
