@@ -91,7 +91,7 @@ def charts_of(vehicle: VehicleFlight) -> list[Chart]:
         shaken += "; PX4 sends the accelerometers' in z, the gyroscopes' in x and y"
     return [
         _chart(
-            Chart("height", "Height", "above the local origin, with the height of the goal"),
+            Chart("height", "Height", "above the local origin; dashed: of the goal"),
             plots.height,
             Line("height", "m"),
             Line("goal", "m", steps=True, dashed=True),

@@ -27,14 +27,18 @@ def duration(seconds: float) -> str:
     return f"{hours} h {minutes} min" if minutes else f"{hours} h"
 
 
+_CLOCK_SET_NS = 946_684_800_000_000_000
+"""The year 2000: a vehicle without a GPS time counts from 1970."""
+
+
 def metres(value: float) -> str:
     """With a decimal below 100 m."""
     return f"{value:.1f} m" if abs(value) < 100.0 else f"{value:.0f} m"
 
 
 def utc(start_ns: int | None) -> str:
-    """Date and time of day; empty where the time is no date."""
-    if start_ns is None:
+    """Date and time of day; empty where the time is no date, or of a clock that was never set."""
+    if start_ns is None or start_ns < _CLOCK_SET_NS:
         return ""
     try:
         return f"{datetime.fromtimestamp(start_ns / 1e9, UTC):%Y-%m-%d %H:%M:%S} UTC"

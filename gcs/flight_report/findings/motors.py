@@ -162,7 +162,7 @@ class MotorsDetector:
         if self.torn is not None or self.uneven is not None:
             level_ = Level.CRITICAL if self.torn is not None else Level.WARNING
         measured = "" if self.most_uneven is None else f"at most {self.most_uneven:.0f} % apart"
-        told = f"at most {UNEVEN.value:g} % in hover"
+        told = f"at most {UNEVEN.value:g} % in hover for {2 * WINDOW_S:g} s"
         result.checks.append(Check("motors", "Motors", measured, told, UNEVEN.source, level_))
         return result
 

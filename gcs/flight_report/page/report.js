@@ -95,6 +95,11 @@
     };
   }
 
+  // Wide enough for the longest number.
+  function roomy(u, values) {
+    return Math.max(44, 14 + 7 * Math.max(0, ...(values || []).map((each) => String(each ?? "").length)));
+  }
+
   function columns(chart) {
     return [chart.x, ...chart.lines.map((each) => each.values)];
   }
@@ -107,7 +112,7 @@
     const right = chart.lines.some((each) => each.axis);
     const axes = [
       { ...axis, values: (u, at) => at.map(tick), incrs: TIME_STEPS, size: 28, space: 70 },
-      { ...axis, size: 44, values: chart.circle ? (u, at) => at.map(compass) : undefined, incrs: chart.circle ? TURN_STEPS : undefined },
+      { ...axis, size: roomy, values: chart.circle ? (u, at) => at.map(compass) : undefined, incrs: chart.circle ? TURN_STEPS : undefined },
     ];
     if (right) axes.push({ ...axis, scale: "right", side: 1, size: 44, grid: { show: false } });
     const scales = {
@@ -120,7 +125,8 @@
       scale: each.axis ? "right" : "y",
       stroke: () => ink("--c" + (number % 4 + 1)),
       width: 1.5,
-      dash: each.dashed ? [6, 4] : undefined,
+      // There are four colours: lines after the fourth are dotted.
+      dash: each.dashed ? [6, 4] : number > 3 ? [2, 3] : undefined,
       paths: each.dots ? () => null : each.steps ? uPlot.paths.stepped({ align: 1 }) : undefined,
       points: each.dots ? { show: true, size: 3 } : { show: false },
       value: (u, value) => (value == null ? "–" : String(Math.round((chart.circle ? compass(value) : value) * 100) / 100)),

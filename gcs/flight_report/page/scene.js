@@ -50,6 +50,9 @@
     function label(p, words, style) {
       ctx.fillStyle = style;
       ctx.font = "13px system-ui, sans-serif";
+      ctx.strokeStyle = ink("--card");
+      ctx.lineWidth = 3;
+      ctx.strokeText(words, px(p)[0] + 6, px(p)[1] - 6);
       ctx.fillText(words, px(p)[0] + 6, px(p)[1] - 6);
     }
 

@@ -26,7 +26,7 @@ def spectrum_figure(spectrum: Spectrum) -> str:
         )
         return f'<figure>{head}<p class="quiet">No spectrum: {text(why)}.</p></figure>'
     most = max(max(values) for _, values in rows) or 1.0
-    view = View(Box(0.0, rows[-1][0], 0.0, 1.08 * most), 1.6 * WIDTH_PX, _HEIGHT_PX)
+    view = View(Box(0.0, rows[-1][0], 0.0, 1.08 * most), WIDTH_PX, _HEIGHT_PX)
     lines = []
     for axis, name in enumerate(_AXES):
         places = (view.px(hertz, values[axis]) for hertz, values in rows)

@@ -145,9 +145,9 @@ def path_key(vehicle: VehicleFlight, fence: Fence) -> str:
     points = vehicle.track.points
     stops = ", ".join(colour_of(i / 6) for i in range(7))
     items = [
-        f"<li>{clock(points[0].t_s)} "
+        f"<li>▲ {clock(points[0].t_s)} "
         f'<i class="ramp" style="background:linear-gradient(90deg,{stops})"></i> '
-        f"{clock(points[-1].t_s)}</li>",
+        f"{clock(points[-1].t_s)} ■</li>",
     ]
     outcomes = {r.outcome for r in vehicle.requests if r.goal_enu is not None}
     if "accepted" in outcomes:

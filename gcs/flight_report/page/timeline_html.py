@@ -64,9 +64,9 @@ def _axis(end_s: float) -> str:
     step_s = next((step for step in _STEPS_S if end_s / step <= _MOST_MARKS), end_s)
     marks = (number * step_s for number in range(int(end_s / step_s) + 1))
     labels = "".join(
-        f'<span style="left:{100.0 * t_s / end_s:.3f}%">{clock(t_s).removesuffix(".0")}</span>'
+        f"<span{' class=last' if t_s > 0.9 * end_s else ''} "
+        f'style="left:{100.0 * t_s / end_s:.3f}%">{clock(t_s).removesuffix(".0")}</span>'
         for t_s in marks
-        if t_s <= 0.97 * end_s
     )
     return (
         '<div class="lane axis"><div class="lane-name"></div>'

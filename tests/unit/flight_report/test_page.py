@@ -13,9 +13,10 @@ import pytest
 
 from gcs.flight_report.charts import chart_data
 from gcs.flight_report.findings_json import report_json
-from gcs.flight_report.flight import Flight
+from gcs.flight_report.flight import Flight, VehicleFlight
 from gcs.flight_report.number_format import clock, duration, utc
 from gcs.flight_report.page.path_svg import colour_of
+from gcs.flight_report.page.timeline_html import timeline
 from gcs.flight_report.projection import Box, View, round_step, ticks
 from gcs.flight_report.render import page
 from gcs.report import (
@@ -304,8 +305,16 @@ class TestWordsAndScales:
         ]
 
     def test_a_time_that_is_no_date(self) -> None:
-        assert utc(10**30) == ""
+        assert [utc(10**30), utc(0), utc(500_000_000)] == ["", "", ""], "no clock was set in 1970"
         assert utc(START_NS) == "2026-01-01 00:00:00 UTC"
+
+    def test_the_last_mark_of_the_states_stays_on_a_phone(self) -> None:
+        """Its text leans back from an end that it would pass: 1:15 of 1:17."""
+        vehicle = VehicleFlight(1)
+        vehicle.lanes.landed.add(0.0, "armed")
+        shown = timeline(Flight("a.mcap", 0, seconds=77.4), vehicle)
+        marks = re.findall(r'<span( class="?last"?)? style="left:[\d.]+%">([\d:.]+)</span>', shown)
+        assert [(bool(last), at) for last, at in marks][-2:] == [(False, "1:00"), (True, "1:15")]
 
     def test_steps_are_round(self) -> None:
         assert [round_step(span, 5) for span in (5.0, 12.0, 33.0, 700.0)] == [1.0, 5.0, 10.0, 200.0]
