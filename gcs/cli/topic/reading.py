@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -34,9 +36,13 @@ class Started:
 
 
 def selectors(topics: Sequence[str]) -> list[Selector]:
-    """Raises UsageError."""
+    """Raises UsageError, also for a file in the place of a topic: no link would ever send it."""
     from gcs.topics.selector import Selector, SelectorError
 
+    for each in topics:
+        if "." in each and Path(each).is_file():
+            hint = f"a record is named by --log: --log {each}"
+            raise ExitError(ExitCode.USAGE, f"{each} is a file, not a topic", hint)
     try:
         return [Selector.parse(text) for text in topics]
     except SelectorError as error:
@@ -138,10 +144,17 @@ def nothing_heard(where: Where, wanted: Sequence[Selector]) -> ExitError:
     return ExitError(ExitCode.NO_VEHICLE, f"{names}: not heard", hint)
 
 
-def no_such_message(wanted: Selector) -> ExitError:
-    """What is written as MAVLink's names are, and is none of them: it need not be waited for."""
-    hint = _near([wanted]) or "gcs topic list tells what is sent"
-    return ExitError(ExitCode.USAGE, f"{wanted.text}: MAVLink has no message of that name", hint)
+def refuse_unknown(wanted: Sequence[Selector], where: Where) -> None:
+    """What is written as MAVLink's names are, and is none of them, need not be waited for on a
+    link.  Raises ExitError."""
+    from gcs.wire.dialect import MESSAGES_BY_NAME
+
+    for each in wanted if not where.recorded else ():
+        name = each.topic.rpartition("/")[2]
+        if re.fullmatch("(?!UNKNOWN)[A-Z][A-Z0-9_]+", name) and name not in MESSAGES_BY_NAME:
+            hint = _near([each]) or "gcs topic list tells what is sent"
+            text = f"{each.text}: MAVLink has no message of that name"
+            raise ExitError(ExitCode.USAGE, text, hint)
 
 
 def _near(wanted: Sequence[Selector]) -> str:

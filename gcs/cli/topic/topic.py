@@ -15,8 +15,8 @@ from gcs.cli.topic.reading import (
     condition_of,
     decoded,
     ended_by_hand,
-    no_such_message,
     nothing_heard,
+    refuse_unknown,
     selected,
     selectors,
     value_of,
@@ -133,6 +133,7 @@ def echo(
     wanted = selectors(topics)
     keep = condition_of(condition)
     where = Where(log_file, last, links, from_s, to_s)
+    refuse_unknown(wanted, where)
     printed = 0
     started = Started(where.heard(seconds))
     with ended_by_hand():
@@ -215,6 +216,7 @@ def hz(
 
     wanted = selectors(topics)
     where = Where(log_file, last, links, from_s, to_s)
+    refuse_unknown(wanted, where)
     kept = window if window is not None or where.recorded else DEFAULT_WINDOW
     found: dict[str, Intervals] = {}
     since: dict[str, int] = {}
@@ -303,8 +305,7 @@ def info(
     known = message_info(selector.topic.rpartition("/")[2])
     where = Where(log_file, last, links)
     senders: dict[str, Intervals] = {}
-    if known is None and not where.recorded and selector.topic.isupper():
-        raise no_such_message(selector)
+    refuse_unknown([selector], where)
     looked = where.recorded or bool(links) or known is None
     if looked:
         with ended_by_hand():

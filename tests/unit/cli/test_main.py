@@ -348,6 +348,8 @@ def test_the_details_of_a_bug_are_kept_whatever_was_typed(
     [
         ("mission check missions", ExitCode.BAD_FILE, "missions: is a folder\n  hint: name a file"),
         ("topic info NOSUCHMSG", ExitCode.USAGE, "MAVLink has no message of that name"),
+        ("topic echo ATTITUD.roll", ExitCode.USAGE, "did you mean 'ATTITUDE'?"),
+        ("topic hz ATTITUD", ExitCode.USAGE, "MAVLink has no message of that name"),
         ("topic info ATITUDE", ExitCode.USAGE, "hint: did you mean 'ATTITUDE'?"),
         (
             "status --vehicle me",

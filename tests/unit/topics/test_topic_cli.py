@@ -140,6 +140,17 @@ def test_what_is_wrong_is_told_in_a_sentence(
     assert (ended.exit_code, said in ended.output) == (code, True), ended.output
 
 
+@pytest.mark.parametrize("command", ["echo", "hz", "list", "info"])
+def test_a_file_in_the_place_of_a_topic_is_not_waited_for_on_a_link(
+    flight: Path, command: str
+) -> None:
+    ended = gcs("topic", command, flight)
+    assert ended.exit_code == ExitCode.USAGE
+    assert f"is a file, not a topic\n  hint: a record is named by --log: --log {flight}" in (
+        ended.output
+    )
+
+
 def test_what_is_not_decoded_is_passed_over_and_told(flight: Path) -> None:
     ended = topic(flight, "echo", "/tf_static", "HEARTBEAT.type", "-n", "1")
     assert ended.output == "/mavlink/1/1/HEARTBEAT.type: 2\n"
