@@ -72,7 +72,7 @@ def _histogram(values: Sequence[float], unit: str) -> str:
             f'<rect x="{left:.1f}" y="{top:.1f}" width="{max(1.0, right - left - 1):.1f}" '
             f'height="{bottom - top:.1f}" style="fill:var(--{"bad" if bad else "c1"})"/>'
         )
-    return _svg(view, [*grid(view, unit, "flights", ""), *bars])
+    return _svg(view, [*bars, *grid(view, unit, "flights", "")])
 
 
 def _dots(name: str, dots: Iterable[tuple[float, Row]]) -> str:

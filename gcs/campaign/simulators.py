@@ -36,8 +36,8 @@ class Simulator(Protocol):
 
 
 Factory: TypeAlias = Callable[[Mapping[str, object]], Simulator]
-"""Raises ValueError with a sentence for a key or a value that it cannot use.  `start_ns` and `seed`
-are in every table; the rest is what the campaign's file says."""
+"""Raises ValueError for a key or a value that it cannot use: `KEY: what is wrong with it`.
+`start_ns` and `seed` are in every table; the rest is what the campaign's file says."""
 
 
 class Truth(msgspec.Struct, frozen=True, gc=False):

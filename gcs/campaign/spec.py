@@ -163,9 +163,15 @@ class _Reader:
         at = (VARY, name)
         if isinstance(value, dict):
             return self._range(name, self._doc.convert(_RangeTable, value, at), at)
-        values = [self._value(each, at) for each in (value if isinstance(value, list) else [value])]
+        listed = value if isinstance(value, list) else [value]
+        values = [self._value(each, at) for each in listed]
         if not values:
             raise self._doc.error(at, "is empty", "list at least one value")
+        kinds = {type(each) for each in values}
+        if kinds == {int, float}:
+            values = [float(each) for each in values]
+        elif len(kinds) > 1:
+            raise self._doc.error(at, "has values of two kinds", "numbers, texts or true and false")
         if name in (POLICY, FAULT) and not all(isinstance(each, str) for each in values):
             raise self._doc.error(at, "is a list of files", f'{name} = ["..."]')
         if len(set(map(repr, values))) < len(values):
@@ -210,6 +216,9 @@ class _Reader:
         except PlanError as error:
             raise self._doc.error(at, str(error), error.hint) from error
         except ValueError as error:
+            key, _, what = str(error).partition(": ")
+            if key in inputs:
+                raise self._doc.error((VARY, key), what) from error
             raise self._doc.error(at, str(error)) from error
 
 

@@ -93,9 +93,10 @@ def rows_digest(rows: Iterable[Row]) -> str:
 def _table(plan: Plan, rows: Sequence[Row]) -> pyarrow.Table:
     import pyarrow
 
-    fields = [("id", pyarrow.int64()), (SEED, pyarrow.int64())]
-    fields += [(axis.name, _type_of(axis)) for axis in plan.axes if axis.name != SEED]
-    columns: Columns = {name: [row.inputs.get(name) for row in rows] for name, _ in fields[1:]}
+    fields = [("id", pyarrow.int64()), *((axis.name, _type_of(axis)) for axis in plan.axes)]
+    if all(axis.name != SEED for axis in plan.axes):
+        fields.append((SEED, pyarrow.int64()))
+    columns: Columns = {name: [row.inputs[name] for row in rows] for name, _ in fields[1:]}
     columns["id"] = [row.id for row in rows]
     kinds = {bool: pyarrow.bool_(), int: pyarrow.int64(), str: pyarrow.string()}
     hints = {each.name: each.type for each in msgspec.structs.fields(Row)}
@@ -110,12 +111,8 @@ def _type_of(axis: Choice | Range) -> pyarrow.DataType:
 
     if isinstance(axis, Range):
         return pyarrow.float64()
-    kinds = {type(value) for value in axis.values}
-    if kinds == {bool}:
-        return pyarrow.bool_()
-    if kinds == {int}:
-        return pyarrow.int64()
-    return pyarrow.float64() if kinds <= {int, float} else pyarrow.string()
+    kinds = {bool: pyarrow.bool_(), int: pyarrow.int64(), float: pyarrow.float64()}
+    return kinds.get(type(axis.values[0]), pyarrow.string())
 
 
 def _rows_of(table: pyarrow.Table) -> list[Row]:
