@@ -74,3 +74,12 @@ def test_each_flight_has_a_seed_of_its_own_where_no_axis_says_it(tmp_path: Path)
     inputs = plan.inputs([0.5] * len(plan.axes))
     seeds = {plan.case(number, inputs).table["seed"] for number in range(50)}
     assert len(seeds) == 50
+
+
+def test_the_campaign_of_the_page_is_one(tmp_path: Path) -> None:
+    text = (Path(__file__).parents[3] / "docs" / "campaign.md").read_text(encoding="utf-8")
+    _, _, rest = text.partition("<!-- example: campaign -->\n```toml\n")
+    plan = planned(tmp_path, rest.partition("```")[0])
+    table = text.partition("| key of `[vary]` | |")[2].partition("\n\n")[0]
+    for axis in plan.axes[1:]:
+        assert f"`{axis.name}`" in table
