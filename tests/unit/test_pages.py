@@ -14,8 +14,12 @@ from gcs.cli.main import COMMANDS
 from gcs.cli.main import gcs as gcs_command
 from gcs.exit_codes import ExitCode
 from gcs.gate.condition import Condition
-from gcs.gate.policy.parse import parse_policy
+from gcs.gate.machine.memory import Goal, Memory
+from gcs.gate.machine.sentences import REFUSED, refusal_of
+from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.refusal import Code
+from gcs.gate.requests import TakePhoto
+from gcs.gate.states import State
 from gcs.operator.errors import ExitError
 
 ROOT = Path(__file__).parents[2]
@@ -142,6 +146,19 @@ def test_every_code_condition_and_exit_code_is_explained() -> None:
     assert set(re.findall(r"^\| ([A-Z_]+) \|", codes, re.MULTILINE)) == {*Code, "BAD_REQUEST"}
     assert set(re.findall(r"^\| `(\w+)` \|", conditions, re.MULTILINE)) == set(Condition)
     assert {int(n) for n in re.findall(r"^\| (\d+) \|", exits, re.MULTILINE)} == set(ExitCode)
+
+
+def test_the_codes_that_the_page_says_have_no_numbers_are_those_of_the_gate_s_states() -> None:
+    """Where the state alone is the reason; a flight goes on, so that there is something to tell."""
+    text = (ROOT / "docs" / "troubleshooting.md").read_text(encoding="utf-8")
+    named = text.partition("`numbers` is empty: ")[2].partition(". The state")[0]
+    without = set(re.findall(r"[A-Z_]+", named))
+    memory = Memory("px4", State.MOVING, goal=Goal((1.0, 2.0, -3.0), None, ()), pos_ned=(0, 0, 0))
+    memory.pos_ns = 0
+    told = {code: refusal_of(code, TakePhoto(), memory, DEFAULT, 10**10) for code in REFUSED}
+    elsewhere = {Code.POLICY, Code.UNSUPPORTED, Code.RTL_BLOCKED, Code.CANNOT_STOP}
+    by_state = {code for code, refusal in told.items() if not refusal.numbers} - elsewhere
+    assert without - {Code.NOT_ARMED} == by_state - {Code.OTHER_OPERATOR}
 
 
 def test_the_policy_of_the_page_is_one() -> None:
