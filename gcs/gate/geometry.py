@@ -53,7 +53,8 @@ class Circle:
 
     def clearance(self, p: Point) -> float:
         """Metres inside the circle, negative outside."""
-        return self.radius_m - _distance(p, self.centre_en)
+        east, north = self.centre_en
+        return self.radius_m - math.hypot(p[0] - east, p[1] - north)
 
     def nearest_edge(self, p: Point) -> Point:
         """The point of the circle nearest to p; to the east of its centre, where p is that."""

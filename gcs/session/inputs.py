@@ -1,4 +1,4 @@
-"""Everything that reaches the session, as a closed union of frozen dataclasses."""
+"""Everything that reaches the session, as a closed union of frozen values."""
 
 from __future__ import annotations
 
@@ -17,8 +17,7 @@ RECORDED: Final = {"operator": "client"}
 """A record calls an operator's number so, which older ones do too."""
 
 
-@dataclass(frozen=True, slots=True)
-class Datagram:
+class Datagram(msgspec.Struct, frozen=True):
     """Bytes that came in on link number `link`, as one datagram or one read of a stream."""
 
     link: int

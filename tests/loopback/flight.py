@@ -244,13 +244,13 @@ class Flight(Looks):
     def _carry_out(self, effect: effects.Effect) -> list[inputs.Input]:
         """Do it; what the session is to hear of it."""
         match effect:
+            case effects.Record(item):  # most of them
+                self.records.append((self.now_ns, item))
             case effects.Transmit(link, data) if link > 0:
                 self.to_client(link, data)
             case effects.Transmit(_, data):
                 self.sent.append(Sent(self.now_ns, data))
                 self.up.send(data, self.now_ns)
-            case effects.Record(item):
-                self.records.append((self.now_ns, item))
             case effects.Emit(ipc.Snapshot()):
                 pass
             case effects.Emit(event):

@@ -48,8 +48,9 @@ class Air:
             broken[dice.randrange(len(broken))] ^= 1 << dice.randrange(8)
             data = bytes(broken)
         copies = 2 if dice.random() < weather.duplicate else 1
+        least_s, most_s = weather.delay_s
         for _ in range(copies):
-            delay_ns = round(dice.uniform(*weather.delay_s) * 1e9)
+            delay_ns = round((least_s + (most_s - least_s) * dice.random()) * 1e9)
             self._count += 1
             heapq.heappush(self._flying, (now_ns + delay_ns, self._count, data))
 

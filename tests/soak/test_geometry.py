@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import random
 from typing import Final
 
@@ -135,7 +134,7 @@ def test_a_leg_that_is_looked_at_at_the_height_of_its_start_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def level(zone: Zone, motion: Motion, beside_m: float) -> Measure | None:
-        return swept_body_measure(zone, dataclasses.replace(motion, b_up_m=motion.a_up_m), beside_m)
+        return swept_body_measure(zone, motion._replace(b_up_m=motion.a_up_m), beside_m)
 
     monkeypatch.setattr(fence_check, "swept_body_measure", level)
     with pytest.raises(AssertionError, match="seed 1: leg of"):

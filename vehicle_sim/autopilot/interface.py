@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum, IntEnum
-from typing import Final, Protocol, TypeAlias
+from typing import Final, NamedTuple, Protocol, TypeAlias
 
 from vehicle_sim.autopilot.boot import BootStage
 from vehicle_sim.estimation.estimator import Health
@@ -56,8 +56,7 @@ class Landed(IntEnum):
     LANDING = 4
 
 
-@dataclass(frozen=True, slots=True)
-class Estimate:
+class Estimate(NamedTuple):
     """What the estimator reports; never the truth."""
 
     time_ns: int
@@ -74,8 +73,7 @@ class Estimate:
     gps_ok: bool
 
 
-@dataclass(frozen=True, slots=True)
-class GpsFix:
+class GpsFix(NamedTuple):
     """What the receiver last said by itself: late, noisy, and not the estimate."""
 
     fix_type: int  # GPS_FIX_TYPE
@@ -88,8 +86,7 @@ class GpsFix:
     epv_m: float
 
 
-@dataclass(frozen=True, slots=True)
-class Readings:
+class Readings(NamedTuple):
     """What the other sensors last said, biases and noise included."""
 
     gyro_frd: Vec3  # rad/s
@@ -107,8 +104,7 @@ class Power:
     remaining_pct: int
 
 
-@dataclass(frozen=True, slots=True)
-class Target:
+class Target(NamedTuple):
     """What the position controller flies to now, for POSITION_TARGET_LOCAL_NED."""
 
     pos_ned: Vec3 | None
@@ -116,8 +112,7 @@ class Target:
     yaw_rad: float | None
 
 
-@dataclass(frozen=True, slots=True)
-class Geodetic:
+class Geodetic(NamedTuple):
     lat_deg: float
     lon_deg: float
     alt_amsl_m: float
@@ -146,8 +141,7 @@ class AttitudeSetpoint:
     thrust: float
 
 
-@dataclass(frozen=True, slots=True)
-class AttitudeGoal:
+class AttitudeGoal(NamedTuple):
     """What the attitude controller flies to now: attitude, body rates [rad/s], thrust 0..1."""
 
     q_ned_from_frd: Quat

@@ -42,6 +42,7 @@ class View:
     _mission: Mission
     _shown: Estimate | None = field(default=None, init=False)
     _shown_home: Vec3 | None = field(default=None, init=False)
+    _fix: tuple[Vec3, Geodetic] | None = field(default=None, init=False)
 
     def restart(self) -> None:
         """As after power-up."""
@@ -113,7 +114,10 @@ class View:
         state = self._state
         s = state.sensed
         judged = state.health
-        where = state.projection.to_geodetic((s.gps_n, s.gps_e, s.gps_d))
+        fix_ned = (s.gps_n, s.gps_e, s.gps_d)
+        if self._fix is None or self._fix[0] != fix_ned:
+            self._fix = fix_ned, state.projection.to_geodetic(fix_ned)
+        where = self._fix[1]
         return Readings(
             gyro_frd=(s.gyro_x, s.gyro_y, s.gyro_z),
             accel_frd=(s.accel_x, s.accel_y, s.accel_z),

@@ -226,9 +226,9 @@ class VehicleServer:
     def _is_for_us(self, message: m.Message) -> bool:
         system = getattr(message, "target_system", 0)
         component = getattr(message, "target_component", 0)
-        if isinstance(message, m.Ping | m.Timesync):
+        if isinstance(message, (m.Ping, m.Timesync)):
             return system in (0, self.system)
-        if isinstance(message, m.CommandLong | m.CommandInt):
+        if isinstance(message, (m.CommandLong, m.CommandInt)):
             # Both answer for components that are not there.
             return system == self.system or (system == 0 and component in (0, COMPONENT))
         return system in (0, self.system) and component in (0, COMPONENT)

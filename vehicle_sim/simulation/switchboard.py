@@ -12,7 +12,7 @@ from typing import Final
 from vehicle_sim.effects import Client, Effect, Note, Report, Send
 from vehicle_sim.services.server import COMPONENT, VehicleServer
 from vehicle_sim.simulation.channels import Channel, Channels, Connection, Packed, datagrams
-from vehicle_sim.simulation.impairment import Air, Direction, Impairment
+from vehicle_sim.simulation.impairment import NEVER_NS, Air, Direction, Impairment
 from vehicle_sim.simulation.traffic import Datagram, LinkSpec, Log, Output, Peer, Transmit
 from vehicle_sim.wire import messages as m
 from vehicle_sim.wire.codec import BY_TYPE, MavlinkFrame
@@ -87,6 +87,8 @@ class Switchboard:
     @property
     def deadline_ns(self) -> int:
         """When the next datagram that was delayed arrives on either side."""
+        if not self._inbound.flying and not self._outbound.flying:
+            return NEVER_NS
         return min(self._inbound.deadline_ns, self._outbound.deadline_ns)
 
     def arrive(self, now_ns: int, out: list[Output]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from vehicle_sim.services.stream_sets import LinkMode
 
@@ -22,8 +22,7 @@ class LinkSpec:
     mode: LinkMode = LinkMode.NORMAL  # which of the vehicles' stream sets is sent on it
 
 
-@dataclass(frozen=True, slots=True)
-class Datagram:
+class Datagram(NamedTuple):
     link: int
     peer: Peer
     data: bytes
@@ -51,8 +50,7 @@ class Wake:
 Input: TypeAlias = Datagram | Joined | Left | Wake
 
 
-@dataclass(frozen=True, slots=True)
-class Transmit:
+class Transmit(NamedTuple):
     link: int
     peer: Peer
     data: bytes

@@ -32,8 +32,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 from msgspec import structs
 
@@ -136,8 +135,8 @@ def paced(
     may_pass = past_ned != goal_ned and is_free(goal_ned, past_ned)
     left_m = math.hypot(away_m, down)
     per_m = most_m_s / left_m if left_m > 0.0 and most_m_s < math.inf else math.inf
-    level = _Axis(rules.level, away_m, v_ned[0] * n + v_ned[1] * e, late_s, may_pass, per_m)
-    vertical = _Axis(rules.vertical, abs(down), v_ned[2] * sign, late_s, may_pass, per_m)
+    level = _axis(rules.level, away_m, v_ned[0] * n + v_ned[1] * e, late_s, may_pass, per_m)
+    vertical = _axis(rules.vertical, abs(down), v_ned[2] * sign, late_s, may_pass, per_m)
 
     def stop_fits(share: float) -> bool:
         fast_h_m_s = share * level.most_m_s + beside_h_m_s
@@ -186,40 +185,19 @@ def speed_there(bounds: Bounds, goal_ned: Vec3, pos_ned: Vec3, most_m_s: float) 
     return math.hypot(*sent.v_ned)
 
 
-@dataclass(frozen=True)
-class _Axis:
+class _Axis(NamedTuple):
     """Level or vertical: `left_m` to the goal, at `speed_m_s` towards it; `may_pass`: there is room
-    to fly past it; `per_m`: the speed that was asked for, by the length of the way that is left."""
+    to fly past it.  `flown_m`: so far ahead of the reported position it is by now; `wanted_m_s`:
+    the speed where everything is open; `most_m_s`: the most that is wanted or flown, from which the
+    stop is looked at."""
 
     pace: Pace
     left_m: float
     speed_m_s: float
-    late_s: float
     may_pass: bool
-    per_m: float
-
-    @cached_property
-    def flown_m(self) -> float:
-        """So far ahead of the reported position it is by now."""
-        return max(0.0, self.speed_m_s) * self.late_s
-
-    @cached_property
-    def wanted_m_s(self) -> float:
-        """The speed where everything is open."""
-        pace, left_m = self.pace, max(0.0, self.left_m - self.flown_m)
-        p = pace.follow_per_s
-        a = min(pace.end_m_s2, pace.follow_m_s2)
-        near_m = a / (p * p)
-        end_m_s = p * left_m if left_m <= near_m else math.sqrt(2.0 * a * (left_m - near_m / 2.0))
-        most_m_s = pace.most_m_s if self.may_pass else pace.near_m_s
-        if self.per_m < math.inf:
-            most_m_s = min(most_m_s, self.per_m * self.left_m)
-        return min(most_m_s, max(0.0, self.speed_m_s) + pace.gain_m_s, end_m_s)
-
-    @cached_property
-    def most_m_s(self) -> float:
-        """The most that is wanted or flown: the stop from it is looked at."""
-        return max(self.wanted_m_s, self.speed_m_s)
+    flown_m: float
+    wanted_m_s: float
+    most_m_s: float
 
     def asked(self, fits_m_s: float, last_m: float) -> tuple[float, float]:
         """The speed to fly at, where the stop fits from `fits_m_s`, and how far ahead of the
@@ -237,6 +215,24 @@ class _Axis:
         if asked_m_s <= a / p:
             return speed_m_s, self.flown_m + asked_m_s / p
         return speed_m_s, self.flown_m + asked_m_s * asked_m_s / (2.0 * a) + a / (2.0 * p * p)
+
+
+def _axis(
+    pace: Pace, left_m: float, speed_m_s: float, late_s: float, may_pass: bool, per_m: float
+) -> _Axis:
+    """`per_m`: the speed that was asked for, by the length of the way that is left."""
+    on_m_s = max(0.0, speed_m_s)
+    flown_m = on_m_s * late_s
+    still_m = max(0.0, left_m - flown_m)
+    p = pace.follow_per_s
+    a = min(pace.end_m_s2, pace.follow_m_s2)
+    near_m = a / (p * p)
+    end_m_s = p * still_m if still_m <= near_m else math.sqrt(2.0 * a * (still_m - near_m / 2.0))
+    most_m_s = pace.most_m_s if may_pass else pace.near_m_s
+    if per_m < math.inf:
+        most_m_s = min(most_m_s, per_m * left_m)
+    wanted_m_s = min(most_m_s, on_m_s + pace.gain_m_s, end_m_s)
+    return _Axis(pace, left_m, speed_m_s, may_pass, flown_m, wanted_m_s, max(wanted_m_s, speed_m_s))
 
 
 def _largest_share(fits: Callable[[float], bool]) -> float | None:

@@ -54,6 +54,8 @@ MOTION: Final = frozenset(CommandKind) - {
 }
 """The commands that set the vehicle in motion, or may: they carry a permit."""
 
+DECIDES: Final = (Requested, StreamSeen, OperatorLost, Tick)
+"""Before these, what has become too old is handled."""
 MUST: Final[Mapping[Severity, Event]] = MappingProxyType(
     {
         Severity.HOLD: Event.MUST_HOLD,
@@ -190,7 +192,7 @@ class Gate:
         Raises ImpossibleError where the table has a bug; every input is legal at any time.
         """
         step = self._step = StepContext(self._step.policy, self._step.memory, now_ns)
-        if isinstance(given, Requested | StreamSeen | OperatorLost | Tick):
+        if isinstance(given, DECIDES):
             self._check_ages()
         if isinstance(given, Requested):
             step.requested = given

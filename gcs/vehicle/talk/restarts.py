@@ -67,6 +67,10 @@ class Began:
         return max(self.from_ns, other.from_ns) - min(self.to_ns, other.to_ns) > by_ns
 
 
+STAMPED: Final = (m.LocalPositionNed, m.Attitude, m.GlobalPositionInt)
+"""Messages that tell the time since the start, and come all the time."""
+
+
 @dataclass(slots=True)
 class Restarts:
     """Of one vehicle; only messages of its autopilot are given to it."""
@@ -88,7 +92,7 @@ class Restarts:
         """What shows that it has restarted, in words; told once.  Empty where nothing does."""
         if isinstance(message, m.Heartbeat):
             return self._beat(message)
-        if not isinstance(message, m.LocalPositionNed | m.Attitude | m.GlobalPositionInt):
+        if not isinstance(message, STAMPED):
             return ""
         if not self._stays_back(message.time_boot_ms, now_ns):
             return ""

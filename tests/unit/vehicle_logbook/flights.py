@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +33,7 @@ class Moving(FakeVehicle):
 
     @property
     def estimate(self) -> Estimate:
-        return replace(super().estimate, v_ned=self.v_ned, heading_rad=self.heading_rad)
+        return super().estimate._replace(v_ned=self.v_ned, heading_rad=self.heading_rad)
 
 
 class Flight:

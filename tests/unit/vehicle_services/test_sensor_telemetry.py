@@ -90,8 +90,8 @@ def test_gps_raw_int_is_the_receiver_and_not_the_estimate() -> None:
 
 def test_without_a_fix_gps_raw_int_says_unknown() -> None:
     vehicle = fake()
-    vehicle.gps = replace(
-        vehicle.gps, fix_type=1, satellites=0, eph_m=float("inf"), epv_m=float("inf")
+    vehicle.gps = vehicle.gps._replace(
+        fix_type=1, satellites=0, eph_m=float("inf"), epv_m=float("inf")
     )
     fix = build.gps_raw_int(vehicle, PX4)
     assert (fix.fix_type, fix.satellites_visible) == (1, 0)

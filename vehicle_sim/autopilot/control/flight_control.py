@@ -187,7 +187,7 @@ class FlightControl:
         f.attitude = BY_MOTION
         f.turn_rad_s = 0.0
         f.straight = f.height_free = False
-        direct = isinstance(demand, FlyTo | FlyVelocity | FlyAtHeight) and demand.direct
+        direct = isinstance(demand, (FlyTo, FlyVelocity, FlyAtHeight)) and demand.direct
         if f.direct and not direct:
             f.ref_vel_n, f.ref_vel_e, f.ref_vel_d = s.v_ned
         f.direct = direct
