@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from typing import assert_never
 
-import msgspec
-
 from gcs import ipc
 from gcs.bridge.effects import (
     AboutVehicle,
@@ -30,12 +28,11 @@ from gcs.bridge.effects import (
 )
 from gcs.exit_codes import ExitCode
 from gcs.gate import effects as gate_effects
-from gcs.gate.condition import Condition, Severity
+from gcs.gate.condition import Condition
 from gcs.gate.effects import CommandKind, Level
 from gcs.gate.inputs import PositionSeen, Requested, Tick
 from gcs.gate.machine.gate import Gate
 from gcs.gate.requests import EndStream
-from gcs.gate.states import Control, State
 from gcs.protocol.effects import Address, Send
 from gcs.session import announcements
 from gcs.session.effects import Effect, Emit, Finish
@@ -91,22 +88,20 @@ from gcs.session.work import (
 )
 from gcs.station.bridge_port import BridgePort
 from gcs.station.ending import Ending
-from gcs.station.fleet.neighbours import others_of
 from gcs.station.fleet.separation import Separation
 from gcs.station.frame_intake import FramesRaisedError, Incoming
-from gcs.station.history import History
 from gcs.station.links import Links
 from gcs.station.operator_lines import line
 from gcs.station.operators import Operators
 from gcs.station.preflight import Itself, before_arming, report
 from gcs.station.queue import WorkQueue
+from gcs.station.shown import RecordKept, Shown
 from gcs.station.signatures import NO_KEYS, Keys, Signatures
 from gcs.station.ticks import Ticks
 from gcs.station.vehicles import FIRST as FIRST_SLOT
 from gcs.station.vehicles import Vehicles
 from gcs.station.waiting_for_vehicle import WaitingForVehicle
-from gcs.vehicle.record_items import fault, hello, introduction, recorded, sim_line
-from gcs.vehicle.snapshot import snapshot
+from gcs.vehicle.record_items import fault, introduction, recorded, sim_line
 from gcs.vehicle.talk.telemetry import Telemetry
 from gcs.vehicle.vehicle import Vehicle
 from gcs.wire.messages import ParamSet
@@ -172,12 +167,8 @@ class Session:
         self._waiting = WaitingForVehicle(
             setup, self._times, self._vehicles, self._signatures, now_ns
         )
-        self._log_path = setup.log_path
-        self._recording = bool(setup.log_path)
-        self._recorded_bytes = 0
-        self._histories = [History()]
-        """Of each vehicle, by its slot; the first one's has the lines of the log."""
-        self._free_bytes: int | None = None
+        self._record = RecordKept(setup.log_path)
+        self._shown = Shown(setup, self._vehicles, self._operators, self._record)
         self._snapshots = 0
         """That were due."""
         self._faults = 0
@@ -243,7 +234,7 @@ class Session:
             queue.run([*recorded(given), *self._begin(given, now_ns)], now_ns)
         if self._bridge.open:
             queue.run([*self._bridge.control(self._operators.in_control, now_ns)], now_ns)
-        queue.run(self._ending.if_due(self._log_path, now_ns), now_ns)
+        queue.run(self._ending.if_due(self._record.path, now_ns), now_ns)
         self._unfinished = self._deadline_ns = None
         if self._incoming.dropped:
             dropped = self._incoming.take_dropped()
@@ -297,9 +288,9 @@ class Session:
                 of_vehicles = self._vehicles.each(lambda each: each.wake(now_ns))
                 return [*of_clients, *of_vehicles, *self._ticks.wake(now_ns)]
             case OperatorJoined():
-                return self._welcome(given, now_ns)
+                return self._shown.welcome(given, now_ns)
             case OperatorLine(operator, ipc.Show(sysid)):
-                return self._show(operator, sysid, now_ns)
+                return self._shown.show(operator, sysid, now_ns)
             case OperatorLine(operator, ipc.Preflight() as asked):
                 return [Emit(self._preflight(asked, now_ns), operator)]
             case OperatorLine(operator, command):
@@ -329,15 +320,12 @@ class Session:
             case RuleSaid():
                 return self._vehicles.each(lambda each: each.rule_said(given))
             case RecorderChanged():
-                return self._recorder(given)
-            case RecorderGrew(size_bytes, free_bytes):
-                self._recorded_bytes = size_bytes
-                if not isinstance(free_bytes, msgspec.UnsetType):
-                    self._free_bytes = free_bytes
+                return self._record.changed(given)
+            case RecorderGrew():
+                self._record.grew(given)
                 return []
-            case DiskLow(free_bytes):
-                self._free_bytes = free_bytes
-                return [_disk_low(given)]
+            case DiskLow():
+                return [self._record.disk_low(given)]
             case SimLine(text):
                 return [sim_line(text, now_ns)]
             case SimGone(exit_code):
@@ -381,7 +369,7 @@ class Session:
             case gate_effects.Outcome():
                 # Whoever waits for an end looks at the vehicle next: not at how it was before.
                 ended = self._operators.outcome(item, vehicle.sysid, now_ns)
-                return [*self._to_each_screen(now_ns), *ended]
+                return [*self._shown.to_each_screen(now_ns), *ended]
             case gate_effects.StreamVerdict():
                 return self._operators.stream_verdict(item, vehicle.sysid, now_ns)
             case gate_effects.SendCommand(kind=CommandKind.ARM) if self._bridge.open:
@@ -402,7 +390,7 @@ class Session:
             case Log():
                 prefix = self._vehicles.prefix(owner)
                 told = announcements.log(item, now_ns, prefix)
-                self._histories[FIRST_SLOT].logged(item, now_ns, prefix)
+                self._shown.logged(item, now_ns, prefix)
                 if self._bridge.open:
                     return [*told, *self._bridge.logged(item, vehicle, now_ns)]
                 return [*told]
@@ -435,7 +423,7 @@ class Session:
             case TellOperator():
                 return self._operators.tell(item)
             case ToScreens(event):
-                return [*self._to_screens(event, owner)]
+                return [*self._shown.to_screens(event, owner)]
             case EndSession(reason):
                 # After it, as the lost operators' requests end there.
                 held = self._bridge.bridge.leave()
@@ -448,7 +436,7 @@ class Session:
                 self._snapshots += 1
                 if left_out and self._snapshots % SNAPSHOTS_A_LOOK != 1:
                     return drawn
-                return [*self._shown(now_ns), *drawn]
+                return [*self._shown.ten_times_a_second(now_ns), *drawn]
             case (
                 Joined()
                 | Lost()
@@ -511,35 +499,6 @@ class Session:
     def _remind(self) -> list[Work]:
         return self._vehicles.each(lambda each: each.remind())
 
-    # -------------------------------------------------------------------------- operator
-
-    def _welcome(self, joined: OperatorJoined, now_ns: int) -> list[Work]:
-        """What everybody else knows already, for one that has just joined."""
-        operator, fence = joined.operator, self._vehicles.first.port.fence_shapes
-        return [
-            Emit(hello(self._setup, self._log_path, fence, operator), operator),
-            Emit(self._snapshot(self._vehicles.first, now_ns), operator),
-            *(Emit(event, operator) for event in self._histories[FIRST_SLOT].told()),
-            *self._operators.join(operator, joined.name, joined.hold_on_leave),
-        ]
-
-    def _show(self, operator: int, sysid: int, now_ns: int) -> list[Work]:
-        """What was before of the vehicle that it is shown from now on; a trail without the log,
-        which it has."""
-        self._operators.screens.show(operator, sysid)
-        slot = self._vehicles.slot_of(sysid) if sysid else FIRST_SLOT
-        if slot is None:
-            return [Emit(self._snapshot(None, now_ns), operator)]
-        vehicle = self._vehicles.of_owner(slot)
-        history = self._history(slot)
-        told: list[ipc.Event] = [
-            ipc.Fences(vehicle.port.fence_shapes),
-            self._snapshot(vehicle, now_ns),
-            history.way(),
-            *history.on_board.all,
-        ]
-        return [Emit(event, operator) for event in told]
-
     # ------------------------------------------------------------------------- preflight
 
     def _preflight(self, asked: ipc.Preflight, now_ns: int) -> ipc.PreflightReport:
@@ -550,19 +509,11 @@ class Session:
     def _itself(self, now_ns: int) -> Itself:
         return Itself(
             now_ns,
-            self._recording,
-            self._log_path,
-            self._free_bytes,
+            self._record.on,
+            self._record.path,
+            self._record.free_bytes,
             self._setup.policy.arm_requires_recording,
         )
-
-    # ---------------------------------------------------------------------------- record
-
-    def _recorder(self, news: RecorderChanged) -> list[Work]:
-        self._recording, self._log_path = news.recording, news.path
-        level = Level.INFO if news.recording else Level.ERROR
-        failed = condition(Condition.RECORDER_FAILED, not news.recording, news.text)
-        return [Log(level, "recorder", news.text), failed]
 
     def _sim_gone(self, exit_code: int) -> list[Work]:
         """Before it was heard, there is nothing to wait for; later, its silence tells."""
@@ -576,62 +527,3 @@ class Session:
             Emit(ipc.Trouble(text, hint, ExitCode.NO_VEHICLE)),
             *self._ending.finish(ExitCode.NO_VEHICLE, text),
         ]
-
-    def _shown(self, now_ns: int) -> list[Work]:
-        """What screens are told ten times a second."""
-        work = self._to_each_screen(now_ns)
-        for slot, vehicle in enumerate(self._vehicles):
-            for event in self._history(slot).on_board.news(vehicle):
-                work += self._to_screens(event, slot)
-        return [*work]
-
-    def _to_each_screen(self, now_ns: int) -> list[Emit]:
-        """To each operator that of the vehicle that it is shown."""
-        told: list[Emit] = []
-        for slot, vehicle in enumerate(self._vehicles):
-            seen = self._snapshot(vehicle, now_ns)
-            self._history(slot).seen(seen)
-            told += self._to_screens(seen, slot)
-        met = frozenset(vehicle.sysid for vehicle in self._vehicles)
-        for operator in self._operators.screens.elsewhere(met):
-            told.append(Emit(self._snapshot(None, now_ns), operator))
-        return told
-
-    def _to_screens(self, event: ipc.Event, slot: int) -> list[Emit]:
-        sysid = self._vehicles.of_owner(slot).sysid
-        return self._operators.screens.tell(event, sysid, first=slot == FIRST_SLOT)
-
-    def _history(self, slot: int) -> History:
-        while len(self._histories) <= slot:
-            self._histories.append(History())
-        return self._histories[slot]
-
-    def _snapshot(self, vehicle: Vehicle | None, now_ns: int) -> ipc.Snapshot:
-        """None: of one that was not met."""
-        first = self._vehicles.first
-        of_station = ipc.Snapshot(
-            time_ns=now_ns,
-            state=State.NO_VEHICLE.name,
-            control=Control.NONE.name,
-            severity=Severity.NOMINAL.name,
-            conditions=[],
-            lost_pct=0.0,
-            log_path=self._log_path,
-            recording=self._recording,
-            recorded_mb=self._recorded_bytes / 1e6,
-            vehicles=self._vehicles.heard_names(now_ns),
-            listening=first.listening(now_ns),
-            in_control=self._operators.in_control,
-            others=others_of(self._vehicles, vehicle),
-        )
-        if vehicle is None:
-            return of_station
-        total, losses = vehicle.missions.total, vehicle.presence.losses
-        return snapshot(of_station, vehicle.gate, vehicle.telemetry, total, losses)
-
-
-def _disk_low(news: DiskLow) -> Log:
-    """The warning, while there is still time to make room."""
-    left = "" if news.left_s is None else f", for {news.left_s / 60:.0f} min at this rate"
-    text = f"the disk of the record has {news.free_bytes / 1e6:.0f} MB left{left}"
-    return Log(Level.ERROR if news.critical else Level.WARNING, "recorder", text)

@@ -224,8 +224,8 @@ class Plain:
             heard = ", ".join(dialogue.snapshot.vehicles if dialogue.snapshot else []) or "none"
             self._err(f"vehicle {sysid}: not heard; there are: {heard}")
         elif not self._config.as_json:
-            told = event_text.state_line(dialogue.snapshot, dialogue.number)
-            self._out(told.replace("state", f"vehicle {sysid}", 1))
+            name = f"vehicle {sysid}"
+            self._out(event_text.state_line(dialogue.snapshot, dialogue.number, name))
 
     def _fly_velocity(self, text: str, asked: request_words.FlyVelocity) -> None:
         """A stream of one velocity, until its time is over, it is refused on the way, as before the

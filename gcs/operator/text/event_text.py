@@ -86,15 +86,15 @@ def whole_degrees(yaw_deg: float) -> int:
     return round(yaw_deg) % 360
 
 
-def state_line(seen: ipc.Snapshot | None, number: int) -> str:
-    """One line: state, control, severity, position in m, mode, motors, battery, and who is in
-    control as operator `number` is told it.
+def state_line(seen: ipc.Snapshot | None, number: int, name: str = "state") -> str:
+    """One line that begins with `name`: state, control, severity, position in m, mode, motors,
+    battery, and who is in control as operator `number` is told it.
 
     `state: HOVERING, control OURS, severity NOMINAL, at E +0.00 N +0.00 U +2.00 m, ...`
     """
     if seen is None:
-        return "state: nothing heard yet"
-    return f"state: {vehicle_words(seen)}, in control: {control_words(seen, number)}"
+        return f"{name}: nothing heard yet"
+    return f"{name}: {vehicle_words(seen)}, in control: {control_words(seen, number)}"
 
 
 def vehicle_words(seen: ipc.Snapshot) -> str:
