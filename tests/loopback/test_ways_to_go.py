@@ -17,7 +17,7 @@ from tests.loopback.flight import HOMES, Flight, Personality
 from tests.loopback.observed import START_NS
 
 UP_M = 3.0
-TURNED_DEG = 5.5
+TURNED_DEG = 2.5
 """[arrival] yaw_deg, and what the nose may sway between two reports."""
 REPLACE = parse_policy('retarget = "replace"', "replace.toml")
 METRES_PER_DEGREE = math.radians(6_371_000.0)
