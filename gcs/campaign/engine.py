@@ -25,6 +25,9 @@ WINDOW: Final = 4
 RETRIES: Final = 5
 CONNECT_WAIT_S: Final = 30.0
 
+DEAF: Final = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""A Ctrl-C is for whoever started the campaign, which ends its workers in order."""
+
 Flight: TypeAlias = "tuple[int, dict[str, Value]]"
 """Its number and its inputs."""
 Flown: TypeAlias = "tuple[Row, bytes]"
@@ -87,6 +90,7 @@ def workers(count: int, scheduler: str) -> Iterator[Client]:
                 dashboard_address=None,
                 local_directory=folder,
                 silence_logs=logging.CRITICAL,
+                preload=DEAF,
             ) as cluster,
             Client(cluster) as client,
         ):

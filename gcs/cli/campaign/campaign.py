@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -38,6 +39,8 @@ def campaign() -> None:
 
     Example: gcs campaign run wind.toml
     """
+    # A Ctrl-C ends what is under way here in order: rows that were flown are kept.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @campaign.command()
