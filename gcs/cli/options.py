@@ -249,7 +249,9 @@ def _policy_file(name: str) -> str:
         )
     if not path.is_file():
         raise ExitError(
-            ExitCode.BAD_FILE, f"{name}: no such policy file", "or one of: " + ", ".join(POLICIES)
+            ExitCode.BAD_FILE,
+            f"{name}: no such policy file",
+            "a file's name, or one of: " + ", ".join(POLICIES),
         )
     return UTF8.convert(name, POLICY, None)
 

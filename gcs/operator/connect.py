@@ -227,5 +227,5 @@ def _policy_file(policy: str) -> str:
 
 
 def _no_policy(policy: str) -> CannotConnect:
-    hint = "or one of: default, lab"
+    hint = "a file's name, or one of: default, lab"
     return CannotConnect(f"{policy}: no such policy file", hint, ExitCode.BAD_FILE)

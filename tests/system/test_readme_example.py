@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.system.programs import LONGEST_S
+from tests.system.patience import until
+from tests.system.programs import GCS, LONGEST_S, running
+from tests.system.vehicle_program import free_port
 
 pytest.importorskip("mavsdk")
 
@@ -65,3 +67,23 @@ def test_the_example_passes_as_it_stands(tmp_path: Path, page: str, name: str) -
     )
     assert ended.returncode == 0, ended.stdout
     assert "1 passed" in ended.stdout
+
+
+def test_the_client_of_a_bridge_does_as_the_page_says(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "connect.md").read_text(encoding="utf-8")
+    port = free_port()
+    script = tmp_path / "client.py"
+    code = example(page, "pymavlink through a bridge").replace("14551", str(port))
+    script.write_text(code, encoding="utf-8")
+    bridge = ("bridge", "--sim", "--client", f"udpin://127.0.0.1:{port}")
+    with running(GCS, *bridge, "--log-dir", str(tmp_path)) as station:
+        until(lambda: any("GROUNDED" in line for line in station.err), "a vehicle that stands")
+        ended = subprocess.run(
+            [sys.executable, str(script)],
+            capture_output=True,
+            text=True,
+            timeout=LONGEST_S,
+            check=False,
+        )
+        assert ended.returncode == 0, ended.stdout + ended.stderr
+        assert "refused TOO_HIGH" in ended.stdout
