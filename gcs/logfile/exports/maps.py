@@ -27,9 +27,8 @@ def write_kml(title: str, tracks: list[Track], target: Sink) -> None:
             "<altitudeMode>absolute</altitudeMode><coordinates>\n".encode()
         )
         for part in _parts(track):
-            target.write(
-                "".join(f"{lon},{lat},{alt}\n" for lat, lon, alt in _places(part)).encode()
-            )
+            lines = (f"{lon},{lat},{alt}\n" for lat, lon, alt in _places(part))
+            target.write("".join(lines).encode())
         target.write(b"</coordinates></LineString></Placemark>\n")
         target.write(
             f"<Placemark><name>{track.name}, with times</name><gx:Track>"
@@ -38,8 +37,7 @@ def write_kml(title: str, tracks: list[Track], target: Sink) -> None:
         for part in _parts(track):
             target.write("".join(f"<when>{each}</when>\n" for each in _times(part)).encode())
         for part in _parts(track):
-            coordinates = (f"{lon} {lat} {alt}" for lat, lon, alt in _places(part))
-            lines = (f"<gx:coord>{each}</gx:coord>\n" for each in coordinates)
+            lines = (f"<gx:coord>{lon} {lat} {alt}</gx:coord>\n" for lat, lon, alt in _places(part))
             target.write("".join(lines).encode())
         target.write(b"</gx:Track></Placemark>\n")
     target.write(b"</Document></kml>\n")

@@ -42,7 +42,7 @@ def export_parquet(
 
 
 class _Writer:
-    """One file.  Messages are collected, as each group of rows of a file takes memory to its end."""
+    """One file.  Messages are collected: each group of rows takes memory up to the file's end."""
 
     def __init__(self, sink: Sink, schema: Any) -> None:
         output = pyarrow.PythonFile(_Output(sink), mode="w")
