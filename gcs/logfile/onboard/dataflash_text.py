@@ -72,7 +72,7 @@ class OnceOverText:
             after = start + len(text) + 1
             name, _, rest = text.partition(separator)
             format_ = of_name.get(name)
-            if format_ is not None:
+            if format_ is not None and (self._is_wanted(format_) or name == b"FMT"):
                 count = len(format_.columns)
                 # The last column may have the separator in its text.
                 values = rest.rstrip(b"\r").split(separator, count - 1)
@@ -82,6 +82,9 @@ class OnceOverText:
                         self._learn(values)
             start = after
         return found
+
+    def _is_wanted(self, format_: Format) -> bool:
+        return self._only is None or format_.name in self._only
 
     def _learn(self, values: list[bytes]) -> None:
         kind, size, name, letters, columns = (value.decode("utf-8", "replace") for value in values)
@@ -112,7 +115,7 @@ class OnceOverText:
             part_of = slice(at, at + len(mine))
             at += len(mine)
             rows[TIME_FIELD] = time_ns[part_of]
-            if len(mine) and (self._only is None or format_.name in self._only):
+            if len(mine) and self._is_wanted(format_):
                 part.tables.append(Rows(format_.name, starts[part_of], rows))
 
 
