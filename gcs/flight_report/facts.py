@@ -163,6 +163,28 @@ class Acceleration:
 
 
 @dataclass(frozen=True, slots=True)
+class Rotation:
+    """Of the first gyroscope, rad/s, in the body's axes."""
+
+    xyz: Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """How strong the field is that the first compass measures."""
+
+    gauss: float
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """Which of the sensors that are in use are not healthy, by what the autopilot says."""
+
+    sensors: frozenset[str]
+    in_use: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
 class Clock:
     """The vehicle's own, seconds since it started."""
 
@@ -227,6 +249,9 @@ Fact: TypeAlias = (
     | LogLine
     | Sample
     | Acceleration
+    | Rotation
+    | Field
+    | Failed
     | Clock
     | Build
     | Parameter

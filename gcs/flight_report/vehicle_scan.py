@@ -15,6 +15,8 @@ from gcs.flight_report.facts import (
     Decision,
     Estimator,
     Fact,
+    Failed,
+    Field,
     Fix,
     Gps,
     Identity,
@@ -23,6 +25,7 @@ from gcs.flight_report.facts import (
     Parameter,
     PlanItem,
     Pose,
+    Rotation,
     Sample,
     Status,
     Text,
@@ -37,6 +40,7 @@ from gcs.flight_report.findings.gate import GateDetector
 from gcs.flight_report.findings.gps import FIX_3D, GpsDetector
 from gcs.flight_report.findings.link import LinkDetector
 from gcs.flight_report.findings.motors import MotorsDetector
+from gcs.flight_report.findings.sensors import SensorsDetector
 from gcs.flight_report.findings.vibration import VibrationDetector
 from gcs.flight_report.findings.wind import WindDetector
 from gcs.flight_report.flight import (
@@ -89,6 +93,7 @@ class VehicleScan:
             EstimatorDetector(),
             BatteryDetector(),
             VibrationDetector(),
+            SensorsDetector(),
             MotorsDetector(),
             WindDetector(),
             ClockDetector(),
@@ -154,7 +159,7 @@ class VehicleScan:
                 self._decision(fact, t_s)
             case Sample() | Acceleration() | Build() | Parameter() | Fix() | PlanItem():
                 self._shown.take(fact, t_s, self._here, in_air=self.now.in_air)
-            case Cells() | LogLine() | Clock():
+            case Cells() | LogLine() | Clock() | Rotation() | Field() | Failed():
                 pass
             case _:
                 assert_never(fact)

@@ -30,6 +30,7 @@ class Fault(NamedTuple):
     keys: Mapping[str, object]
     title: str
     """A part of the headline that names it."""
+    within_s: float = STRUCK_S[1]
 
 
 FAULTS = (
@@ -47,7 +48,15 @@ FAULTS = (
     Fault("link", {"loss": 0.4}, "of the vehicle's messages were lost"),
     Fault("reboot", {}, "the autopilot restarted"),
     Fault("clock_jump", {"by_s": 100}, "the vehicle's clock jumped"),
+    Fault("mag", {"lost": True}, "the autopilot said that its compass failed"),
 )
+IN_MEASUREMENTS = (
+    Fault("mag", {"offset_gauss": [0.3, 0, 0]}, "the compass measured something else at once"),
+    Fault("gyro_bias", {"offset_rad_s": [0.05, 0, 0]}, "the gyroscope measured something else"),
+    # Two hovers are compared, and the height must be at rest again.
+    Fault("accel_bias", {"offset_m_s2": [0, 0, 1.5]}, "the accelerometer measured", within_s=12.0),
+)
+"""What the sensors themselves show.  An ArduCopter does not send their measurements unasked."""
 GOOD = (*((personality, wind) for personality in PERSONALITIES for wind in (0.0, 3.0, 5.0)),)
 
 
@@ -89,11 +98,20 @@ def flown(
 def test_an_injected_fault_is_the_headline(
     tmp_path: Path, personality: Personality, fault: Fault
 ) -> None:
+    assert_it_is_the_headline(tmp_path, personality, fault)
+
+
+@pytest.mark.parametrize("fault", [pytest.param(f, id=f.kind) for f in IN_MEASUREMENTS])
+def test_a_sensor_that_is_wrong_is_the_headline(tmp_path: Path, fault: Fault) -> None:
+    assert_it_is_the_headline(tmp_path, "px4", fault)
+
+
+def assert_it_is_the_headline(tmp_path: Path, personality: Personality, fault: Fault) -> None:
     path, struck_s = flown(tmp_path, personality, fault)
     headline = main_trouble(scan(path).main_vehicle())
     assert headline is not None
     assert fault.title in headline.title
-    assert STRUCK_S[0] <= headline.t_s - struck_s <= STRUCK_S[1]
+    assert STRUCK_S[0] <= headline.t_s - struck_s <= fault.within_s
 
 
 @pytest.mark.parametrize(("personality", "wind_m_s"), GOOD)

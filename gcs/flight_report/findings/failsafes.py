@@ -34,6 +34,13 @@ _COPTER = "texts of an ArduCopter 4.7, recorded"
 _MEMORY = "texts of the autopilots, from memory"
 
 TEXTS = (
+    _row(
+        r"due to manual control loss|^radio failsafe(?! cleared)",
+        Level.CRITICAL,
+        "the radio control was lost",
+        "texts of a PX4 1.14, from memory, and of an ArduCopter 4.7, recorded",
+        "radio",
+    ),
     _row(r"^failsafe activated", Level.CRITICAL, "the vehicle's failsafe acted", _PX4),
     _row(
         r"^connection to ground station lost",
@@ -43,7 +50,7 @@ TEXTS = (
         "link",
     ),
     _row(
-        r"^(gcs|radio|battery|ekf|terrain|dead ?reckon) failsafe(?! cleared)",
+        r"^(gcs|battery|ekf|terrain|dead ?reckon) failsafe(?! cleared)",
         Level.CRITICAL,
         "the vehicle's failsafe acted",
         _COPTER,

@@ -13,6 +13,7 @@ from gcs.flight_report.facts import (
     Cells,
     Estimator,
     Fact,
+    Failed,
     Gps,
     Identity,
     Text,
@@ -41,17 +42,38 @@ def _heartbeat() -> Read:
     return facts
 
 
+SENSORS: Mapping[int, str] = {
+    1 << 0: "gyroscope",
+    1 << 1: "accelerometer",
+    1 << 2: "compass",
+    1 << 3: "barometer",
+    1 << 16: "radio receiver",
+}
+"""MAV_SYS_STATUS_SENSOR; GPS and battery are told in other messages, and better."""
+
+
+def _sensors(bits: int) -> frozenset[str]:
+    return frozenset(name for bit, name in SENSORS.items() if bits & bit)
+
+
 def _sys_status() -> Read:
     read = numbers("SYS_STATUS", "voltage_battery", "current_battery", "battery_remaining")
+    health = numbers(
+        "SYS_STATUS",
+        *(f"onboard_control_sensors_{each}" for each in ("present", "enabled", "health")),
+    )
 
     def facts(data: bytes) -> list[Fact]:
         millivolts, centiamperes, percent = read(data)
+        present, enabled, healthy = (int(bits) for bits in health(data))
+        in_use = present & enabled
         return [
+            Failed(_sensors(in_use & ~healthy), _sensors(in_use)),
             Battery(
                 millivolts / 1e3 if 0 < millivolts < 0xFFFF else None,
                 centiamperes / 1e2 if centiamperes >= 0 else None,
                 float(percent) if percent >= 0 else None,
-            )
+            ),
         ]
 
     return facts

@@ -11,8 +11,10 @@ from gcs.flight_report.facts import (
     Build,
     Clock,
     Fact,
+    Field,
     Fix,
     PlanItem,
+    Rotation,
     Sample,
 )
 from gcs.flight_report.readers.mavlink_fields import Read, numbers
@@ -21,6 +23,7 @@ from gcs.record.derived.vehicle_json import euler_deg
 from gcs.wire.ids import Cmd
 
 MILLI_G = 9.80665e-3
+_IMU_KINDS = ("acc", "gyro", "mag")
 _UNUSED_US = 0xFFFF
 _NO_RATES, _NO_ATTITUDE = 0b111, 0b1000_0000
 """ATTITUDE_TARGET.type_mask."""
@@ -155,13 +158,21 @@ def _wind_cov() -> Read:
     return facts
 
 
-def _imu(message: str, scale: float) -> Callable[[], Read]:
+def _imu(message: str, m_s2: float, rest: float) -> Callable[[], Read]:
+    """What one unit is of the accelerations, and of the rates (rad/s) and the field (gauss)."""
+
     def make() -> Read:
-        read = numbers(message, "xacc", "yacc", "zacc")
+        axes = "xyz"
+        read = numbers(message, *(f"{axis}{kind}" for kind in _IMU_KINDS for axis in axes))
 
         def facts(data: bytes) -> list[Fact]:
-            x, y, z = read(data)
-            return [Acceleration((scale * x, scale * y, scale * z))]
+            x, y, z, p, q, r, *field = read(data)
+            return [
+                Acceleration((m_s2 * x, m_s2 * y, m_s2 * z)),
+                Rotation((rest * p, rest * q, rest * r)),
+                # Without a compass they are 0.
+                *([Field(rest * hypot(*field))] if any(field) else []),
+            ]
 
         return facts
 
@@ -238,8 +249,8 @@ SAMPLE_READERS: Mapping[str, Callable[[], Read]] = {
     "MANUAL_CONTROL": _manual_control,
     "WIND": _wind,
     "WIND_COV": _wind_cov,
-    "HIGHRES_IMU": _imu("HIGHRES_IMU", 1.0),
-    "RAW_IMU": _imu("RAW_IMU", MILLI_G),
+    "HIGHRES_IMU": _imu("HIGHRES_IMU", 1.0, 1.0),
+    "RAW_IMU": _imu("RAW_IMU", MILLI_G, 1e-3),
     "AUTOPILOT_VERSION": _autopilot_version,
     "GLOBAL_POSITION_INT": _global_position,
 }

@@ -6,20 +6,23 @@ Fields: ArduPilot wiki, Log Messages; PX4's msg folder, 1.14 and before.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import degrees
+from math import degrees, hypot
 
 from gcs.flight_report.facts import (
     Acceleration,
     Build,
     Fact,
+    Field,
     Fix,
     Parameter,
     PlanItem,
+    Rotation,
     Sample,
 )
 from gcs.flight_report.readers.mavlink_samples import percent, stick, wind
 from gcs.flight_report.readers.packed_fields import PackedFields, Read, Value
 from gcs.flight_report.sampled import MOTORS, WANTED
+from gcs.frames import Vec3
 from gcs.record.derived.vehicle_json import euler_deg
 
 _MakeRead = Callable[[PackedFields], Read]
@@ -54,14 +57,43 @@ def _pulses(plot: str, count: int, of: Callable[[float], float | None]) -> _Make
 
 
 def _imu(fields: PackedFields) -> Read:
-    instance, read = fields.value("I"), fields.values("AccX", "AccY", "AccZ")
+    instance = fields.value("I")
+    accelerations = _vector(fields, "AccX", "AccY", "AccZ")
+    rates = _vector(fields, "GyrX", "GyrY", "GyrZ")
 
     def facts(data: bytes) -> list[Fact]:
-        x, y, z = read(data)
-        if instance(data) or x is None or y is None or z is None:
-            return []
-        return [Acceleration((x, y, z))]
+        return [] if instance(data) else _inertial(accelerations(data), rates(data))
 
+    return facts
+
+
+def _mag(fields: PackedFields) -> Read:
+    instance, read = fields.value("I"), _vector(fields, "MagX", "MagY", "MagZ")
+
+    def facts(data: bytes) -> list[Fact]:
+        milligauss = read(data)
+        return [] if instance(data) or milligauss is None else [Field(hypot(*milligauss) / 1e3)]
+
+    return facts
+
+
+def _vector(fields: PackedFields, *names: str) -> Callable[[bytes], Vec3 | None]:
+    """None where one of the three is not known."""
+    read = fields.values(*names)
+
+    def vector(data: bytes) -> Vec3 | None:
+        x, y, z = read(data)
+        return None if x is None or y is None or z is None else (x, y, z)
+
+    return vector
+
+
+def _inertial(acceleration: Vec3 | None, rates: Vec3 | None) -> list[Fact]:
+    facts: list[Fact] = []
+    if acceleration is not None:
+        facts.append(Acceleration(acceleration))
+    if rates is not None:
+        facts.append(Rotation(rates))
     return facts
 
 
@@ -186,11 +218,17 @@ def _wind(fields: PackedFields) -> Read:
 
 
 def _sensor_combined(fields: PackedFields) -> Read:
-    read = fields.values(*(f"accelerometer_m_s2_{n}" for n in range(3)))
+    accelerations = _vector(fields, *(f"accelerometer_m_s2_{n}" for n in range(3)))
+    rates = _vector(fields, *(f"gyro_rad_{n}" for n in range(3)))
+    return lambda data: _inertial(accelerations(data), rates(data))
+
+
+def _magnetometer(fields: PackedFields) -> Read:
+    read = _vector(fields, *(f"magnetometer_ga_{n}" for n in range(3)))
 
     def facts(data: bytes) -> list[Fact]:
-        x, y, z = read(data)
-        return [] if x is None or y is None or z is None else [Acceleration((x, y, z))]
+        gauss = read(data)
+        return [] if gauss is None else [Field(hypot(*gauss))]
 
     return facts
 
@@ -209,6 +247,7 @@ ONBOARD_SAMPLES: Mapping[tuple[str, str], _MakeRead] = {
     ("dataflash", "RCOU"): _pulses("motors", MOTORS, percent),
     ("dataflash", "RCIN"): _pulses("sticks", 4, stick),
     ("dataflash", "IMU"): _imu,
+    ("dataflash", "MAG"): _mag,
     ("dataflash", "XKF2"): _ekf_wind,
     ("dataflash", "NKF2"): _ekf_wind,
     ("dataflash", "PARM"): _parm,
@@ -225,5 +264,6 @@ ONBOARD_SAMPLES: Mapping[tuple[str, str], _MakeRead] = {
     ("ulog", "wind_0"): _wind,
     ("ulog", "wind_estimate_0"): _wind,
     ("ulog", "sensor_combined_0"): _sensor_combined,
+    ("ulog", "vehicle_magnetometer_0"): _magnetometer,
     ("ulog", "parameter_defaults"): _defaults,
 }
