@@ -62,6 +62,9 @@ from tests.soak.point_mass import STEP_NS, STILL, TO_RETURN_UP_M, PointMass
 TICK_NS: Final = 50_000_000
 MS_NS: Final = 1_000_000
 SECOND_NS: Final = 1_000_000_000
+NOSES_RAD: Final = (0.5, 2.5, 0.5, None)
+NOSE_MS: Final = 4_000
+"""Where the nose is told to point, for so long each: where goals ask for it, elsewhere, nowhere."""
 OLDEST_S: Final = 0.9
 """The session hands on no position that is older than `position_age_s` when it comes."""
 SETTLED_S: Final = 3.0
@@ -353,9 +356,12 @@ class HostileRun:
                 self._say(MissionSeen(self._items, self._items + len(v.path), not v.path))
         if n % 5 == 0 or v.speed_m_s > STILL:
             north, east, down = v.vel
-            late_s = self.report_delay_ns / SECOND_NS
+            late_s, now_ms = self.report_delay_ns / SECOND_NS, self.now_ns // MS_NS
+            yaw_rad = NOSES_RAD[now_ms // NOSE_MS % len(NOSES_RAD)]
             self._say(
-                PositionSeen(v.reported(), (north, east, down), self.now_ns // MS_NS, late_s=late_s)
+                PositionSeen(
+                    v.reported(), (north, east, down), now_ms, late_s=late_s, yaw_rad=yaw_rad
+                )
             )
 
     def _send_again(self) -> None:
