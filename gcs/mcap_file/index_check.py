@@ -14,6 +14,7 @@ from mcap.records import ChunkIndex
 from mcap.summary import Summary
 
 from gcs.mcap_file.format import RECORD_HEAD, Opcode, inflate, whole_records
+from gcs.mcap_file.reader import KEPT_BYTES, release
 
 _MESSAGE_HEAD = struct.Struct("<HIQ")
 _INDEX_HEAD = struct.Struct("<HI")
@@ -41,8 +42,12 @@ def wrong_with_index(path: Path, counted: Mapping[int, int]) -> Iterator[str]:
         yield from _wrong_with_channels(summary, counted)
         with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
             indexed: Counter[int] = Counter()
-            for index in summary.chunk_indexes:
+            kept_from = 0
+            for index in sorted(summary.chunk_indexes, key=lambda each: each.chunk_start_offset):
                 yield from _wrong_with_chunk(data, index, indexed)
+                end = min(len(data), index.chunk_start_offset + index.chunk_length)
+                if end - kept_from >= KEPT_BYTES:
+                    kept_from = release(data, kept_from, end)
         if indexed != Counter(counted):
             yield f"its index leads to {indexed.total()} of {sum(counted.values())} messages"
 

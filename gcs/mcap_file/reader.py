@@ -35,7 +35,7 @@ MAX_UNPACKED_SHARE = 30
 times.  lz4 can make 255 bytes of one."""
 MAX_LENGTH = 1 << 30
 """A record of a growing file that says it is longer is none, and would be waited for in vain."""
-_KEPT_BYTES = 16 * 1024 * 1024
+KEPT_BYTES = 16 * 1024 * 1024
 """So much of a mapped file, once read, stays in memory."""
 _TOLD_BYTES = 128 * 1024
 """So often the progress is told."""
@@ -127,7 +127,7 @@ class Reading:
             elif (record := self._parsed(opcode, data[body:end])) is not None:
                 yield record
             start = condition.position = end
-            if end - kept_from >= _KEPT_BYTES:
+            if end - kept_from >= KEPT_BYTES:
                 kept_from = release(data, kept_from, end)
             if self._progress is not None and end - told >= _TOLD_BYTES:
                 told = end

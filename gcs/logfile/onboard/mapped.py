@@ -10,10 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from gcs.mcap_file.chunk_reader import Bytes, Index
-from gcs.mcap_file.reader import release
+from gcs.mcap_file.reader import KEPT_BYTES, release
 
-_KEPT_BYTES = 16 << 20
-"""So much of what was read stays in memory."""
 _CACHED_BYTES = 1 << 18
 
 
@@ -38,7 +36,7 @@ class MappedFile:
 
     def done(self, upto: int) -> None:
         """What is before `upto` is not needed again soon."""
-        if upto - self._kept_from >= _KEPT_BYTES:
+        if upto - self._kept_from >= KEPT_BYTES:
             self._kept_from = release(self._map, self._kept_from, upto)
 
     def places_of(self, byte: int, begin: int, end: int) -> Index:
