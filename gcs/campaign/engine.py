@@ -25,6 +25,16 @@ WINDOW: Final = 4
 RETRIES: Final = 5
 CONNECT_WAIT_S: Final = 30.0
 
+SPARING: Final = {
+    "distributed.logging.distributed": "critical",
+    "distributed.worker.memory.pause": False,  # a flight ends before anything could be spilled
+    "distributed.worker.memory.spill": False,
+    "distributed.worker.memory.target": False,
+    "distributed.worker.profile.enabled": False,  # a hundred looks a second at what is flown
+    "distributed.admin.system-monitor.interval": "10s",
+    "distributed.admin.system-monitor.gil.enabled": False,
+}
+"""What Dask watches beside, nobody looks at here."""
 DEAF: Final = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 """A Ctrl-C is for whoever started the campaign, which ends its workers in order."""
 
@@ -66,13 +76,7 @@ def workers(count: int, scheduler: str) -> Iterator[Client]:
     from distributed import Client, LocalCluster
 
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    quiet = {
-        "distributed.logging.distributed": "critical",
-        "distributed.worker.memory.pause": False,  # a flight ends before anything could be spilled
-        "distributed.worker.memory.spill": False,
-        "distributed.worker.memory.target": False,
-    }
-    with dask.config.set(quiet):
+    with dask.config.set(SPARING):
         if scheduler:
             try:
                 client = Client(scheduler, timeout=CONNECT_WAIT_S)
