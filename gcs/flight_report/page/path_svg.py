@@ -125,8 +125,9 @@ def _drawing(
     view: View, plane: Plane, vehicle: VehicleFlight, points: list[TrackPoint]
 ) -> list[str]:
     parts = [*_plan(view, plane, vehicle.plan), *_path(view, plane, vehicle.track.drawn())]
+    labels: list[tuple[float, float]] = []
     parts += [
-        _goal(view, plane(request.goal_enu), request)
+        _goal(view, plane(request.goal_enu), request, labels)
         for request in vehicle.requests
         if request.goal_enu is not None and request.word == "goto"
     ]
@@ -173,7 +174,13 @@ def _path(view: View, plane: Plane, pieces: Sequence[Sequence[TrackPoint]]) -> l
     return [f'<g class="path">{"".join(parts)}</g>']
 
 
-def _goal(view: View, at: tuple[float, float], request: Request) -> str:
+def _goal(
+    view: View,
+    at: tuple[float, float],
+    request: Request,
+    labels: list[tuple[float, float]],
+) -> str:
+    """`labels`: where those of earlier goals are."""
     refused = request.outcome == "refused"
     kind = "refused" if refused else "accepted"
     words = f"#{request.request_id} {request.word} {request.outcome}"
@@ -187,14 +194,39 @@ def _goal(view: View, at: tuple[float, float], request: Request) -> str:
         if refused
         else f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5"/>'
     )
-    right = x < view.width_px - 60.0
-    anchor, label_x = ("start", x + 9.0) if right else ("end", x - 9.0)
     label = f"#{request.request_id} {_beyond_edge(view.box, at)}".strip()
-    label_y = min(max(y - 6.0, 12.0), view.height_px - 4.0)
+    left, label_y = _label_place(view, x, y, labels)
+    labels.append((left, label_y))
+    anchor, label_x = ("start", left) if left > x else ("end", left + _LABEL_PX[0])
     return (
         f'<g class="goal {kind}"><title>{text(words)}</title>{mark}'
         f'<text x="{label_x:.1f}" y="{label_y:.1f}" text-anchor="{anchor}">{label}</text></g>'
     )
+
+
+_LABEL_PX = (48.0, 20.0)
+"""So large is the label of a goal on a phone and on paper, where it is largest."""
+
+
+def _label_place(
+    view: View, x: float, y: float, labels: Sequence[tuple[float, float]]
+) -> tuple[float, float]:
+    """The left end and the line of a label beside a mark, where no other one is, if there is such a
+    place: above it to the right, else below it, else to the left."""
+    wide, high = _LABEL_PX
+    right, left = x + 9.0, x - 9.0 - wide
+    columns = (right, left) if x < view.width_px - 60.0 else (left,)
+    places = [
+        (column, min(max(line, 12.0), view.height_px - 4.0))
+        for column in columns
+        for line in (y - 6.0, y + high)
+    ]
+    free = (
+        (column, line)
+        for column, line in places
+        if all(abs(column - a) >= wide or abs(line - b) >= high for a, b in labels)
+    )
+    return next(free, places[0])
 
 
 def _beyond_edge(box: Box, at: tuple[float, float]) -> str:

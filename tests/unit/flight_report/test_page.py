@@ -7,6 +7,7 @@ import hashlib
 import json
 import re
 from html.parser import HTMLParser
+from itertools import combinations
 from pathlib import Path
 
 import pytest
@@ -307,6 +308,23 @@ class TestWordsAndScales:
     def test_a_time_that_is_no_date(self) -> None:
         assert [utc(10**30), utc(0), utc(500_000_000)] == ["", "", ""], "no clock was set in 1970"
         assert utc(START_NS) == "2026-01-01 00:00:00 UTC"
+
+    def test_the_labels_of_goals_that_are_near_do_not_lie_over_each_other(
+        self, tmp_path: Path
+    ) -> None:
+        """On a phone, where a label is 48 by 20 of the picture's 640 across."""
+        goals = [decided(n, "refused", goal=PointEnu(0.3 * n, 0.0, 3.0)) for n in (1, 2, 3)]
+        flown = [PoseItem(1, (n, 0.0, -3.0), (1.0, 0.0, 0.0), UPRIGHT) for n in range(20)]
+        html = page(scanned(tmp_path, [heartbeat(), *flown, *goals], 500 * MS))
+        label = r'<text x="([\d.]+)" y="([\d.]+)" text-anchor="(\w+)">#'
+        places = [
+            (float(x) - (48.0 if anchor == "end" else 0.0), float(y))
+            for x, y, anchor in re.findall(label, html)
+        ]
+        assert len(places) == 6, "three goals, in two pictures"
+        for three in (places[:3], places[3:]):
+            for (a, up), (b, down) in combinations(three, 2):
+                assert abs(a - b) >= 48.0 or abs(up - down) >= 20.0
 
     def test_the_last_mark_of_the_states_stays_on_a_phone(self) -> None:
         """Its text leans back from an end that it would pass: 1:15 of 1:17."""
