@@ -122,6 +122,8 @@ class Decisions:
 
     def _boot(self) -> None:
         state = self._state
+        if state.origin is not None and state.home_ned is not None and not state.boot_sequence.real:
+            return  # that is all of a quick start
         stage = state.boot_stage
         for text in state.boot_sequence.texts(state.age_ns, state.ground.alt_amsl_m):
             state.say(6, text)

@@ -111,7 +111,7 @@ def sys_status(vehicle: Vehicle, profile: Profile) -> m.SysStatus:
         healthy &= ~Sensor.MAG_3D
     if not health.baro_ok:
         healthy &= ~Sensor.ABSOLUTE_PRESSURE
-    if not (vehicle.armable or vehicle.armed):
+    if not (vehicle.armed or vehicle.armable):  # the latter takes a look at everything
         healthy &= ~Sensor.PREARM_CHECK
     if sensors.starting and not vehicle.boot_stage.position:
         present, enabled, healthy = _px4_starting(vehicle.boot_stage)
