@@ -9,6 +9,7 @@ never reaches the gate; nor does a stream, whose legs nobody knows before it is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
@@ -39,6 +40,9 @@ _ASKED_FOR: Final = frozenset(
     {Event.GOTO, Event.TAKE_OFF, Event.RETURN, Event.MISSION, Event.STREAM_BEGIN}
 )
 _STOPS: Final = frozenset({Event.ABORT, Event.HOLD, Event.LAND, Event.DISARM, Event.FORCE_DISARM})
+_LANDS: Final = frozenset({Event.RETURN, Event.MISSION})
+"""What comes down at its end, as by a landing, which the rule is not asked for."""
+STRAIGHT_DOWN_M: Final = 0.1
 LegsOf: TypeAlias = Callable[[Requested, Vec3], Sequence[Leg]]
 """What a request leads along, from where the vehicle is (local NED)."""
 
@@ -114,6 +118,8 @@ class OwnRule:
         if pos_ned is None:
             return self._refused(Refusal(Code.NO_POSITION, "there is no position yet"))
         legs = legs_of(requested, pos_ned)
+        if event_of(requested.request) in _LANDS:
+            legs = [leg for leg in legs if not _comes_down(leg)]
         if not legs:
             return self._refused(self.no_legs)
         if len(legs) > MOST_LEGS:
@@ -164,6 +170,11 @@ class OwnRule:
 
 def _refuses(verdict: Verdict | None) -> bool:
     return verdict is not None and verdict.ruling is Ruling.REFUSED
+
+
+def _comes_down(leg: Leg) -> bool:
+    (north, east, down), (to_north, to_east, to_down) = leg
+    return to_down > down and math.hypot(to_north - north, to_east - east) <= STRAIGHT_DOWN_M
 
 
 def _enu(place_ned: Vec3) -> Vec3:
