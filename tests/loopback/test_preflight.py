@@ -83,9 +83,8 @@ def test_a_vehicle_that_is_ready_passes_once_all_is_read(personality: Personalit
     read_what_is_unread(flight)
     report = look(flight)
     assert not report.fails
-    missing = [] if personality == "px4" else [["PSC_ANGLE_MAX"]]  # vehicle-sim has it not
-    assert (report.vehicle, report.unread, report.mission_unverified) == (1, missing, False)
-    assert bad(flight) == ({"stop parameters": "caution"} if missing else {})
+    assert (report.vehicle, report.unread, report.mission_unverified) == (1, [], False)
+    assert bad(flight) == {}
 
 
 def lose_gps(flight: Flight) -> None:
