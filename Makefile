@@ -91,7 +91,7 @@ $(RUN): pyproject.toml
 	@touch $@
 
 $(TEST): pyproject.toml
-	@sh .ci/install $(VENV) '.[test]' 110
+	@sh .ci/install $(VENV) '.[test]' 115
 	@echo "compiling the tests (once, else each worker of the first run does it)"
 	-@$(BIN)/python -m pytest --collect-only -qq >/dev/null 2>&1
 	@touch $@ $(RUN)
