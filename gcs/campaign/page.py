@@ -58,7 +58,7 @@ def lead(told: Summary) -> str:
 def probability(told: Summary) -> str:
     """What the share says of the flights that were not flown; empty for those that were chosen
     because of what they might do."""
-    if told.sample in ("grid", "search") or not told.flights:
+    if not _drawn(told):
         return ""
     share = told.breaches
     return (
@@ -168,7 +168,7 @@ def _axes(told: Summary) -> str:
                 each.value or "none",
                 str(each.breaches.of),
                 str(each.breaches.hits),
-                _bounds(each.breaches),
+                _bounds(told, each.breaches),
                 _metres(each.median_m),
             )
             for each in told.levels
@@ -186,7 +186,7 @@ def _cells(told: Summary) -> str:
                 each.cell,
                 str(each.breaches.of),
                 str(each.breaches.hits),
-                _bounds(each.breaches),
+                _bounds(told, each.breaches),
                 str(each.failures),
                 _metres(each.closest_m),
                 str(each.worst),
@@ -214,8 +214,13 @@ def _table(names: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return f'<table class="stacked"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
 
 
-def _bounds(share: Share) -> str:
-    return f"{_percent(share.low)} to {_percent(share.high)}"
+def _drawn(told: Summary) -> bool:
+    """By chance, and not because of what they might do: a share of them is a probability."""
+    return told.sample in ("random", "latin") and told.flights > 0
+
+
+def _bounds(told: Summary, share: Share) -> str:
+    return "—" if not _drawn(told) else f"{_percent(share.low)} to {_percent(share.high)}"
 
 
 def _percent(share: float) -> str:

@@ -35,4 +35,5 @@ def test_of_a_search_no_probability_is_told(tmp_path: Path) -> None:
     rows = [Pretended(lambda _: 1.0).row((n, plan.inputs([0.5] * 5))) for n in range(10)]
     told = summary(plan, rows, "")
     assert probability(told) == ""
+    assert " % to " not in campaign_page(plan, told, rows, {})
     assert lead(told) == "None of 10 flights left its fence; the nearest came to 1.00 m."
