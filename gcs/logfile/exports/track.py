@@ -59,7 +59,8 @@ _SOURCES = {
 
 def tracks_of(path: Path, progress: Callable[[int], None] | None = None) -> list[Track]:
     """The best source of each vehicle.  Raises BadLogError where there is no position."""
-    found: dict[tuple[int, int], list[NDArray[Any]]] = {}
+    best: dict[int, tuple[int, list[NDArray[Any]]]] = {}
+    """Of each vehicle the rank of its best source, and the points of that."""
     names = {name.partition(" ")[0] for name in _SOURCES}
     names |= {f"{name}_0" for name in names}
     for table in tables_of(path, names, progress):
@@ -68,14 +69,14 @@ def tracks_of(path: Path, progress: Callable[[int], None] | None = None) -> list
             continue
         for sysid, rows in _by_vehicle(table.rows):
             points = _not_too_often(_points(rows, source))
-            found.setdefault((sysid, rank), []).append(points)
-    tracks = []
-    for sysid in sorted({sysid for sysid, _ in found}):
-        for rank in sorted(rank for who, rank in found if who == sysid):
-            track = _track(f"vehicle {sysid}", np.concatenate(found.pop((sysid, rank))))
-            if len(track):
-                tracks.append(track)
-                break
+            known = best.get(sysid)
+            if not len(points):
+                continue
+            if known is None or rank < known[0]:
+                best[sysid] = rank, [points]
+            elif rank == known[0]:
+                known[1].append(points)
+    tracks = [_track(f"vehicle {n}", np.concatenate(best.pop(n)[1])) for n in sorted(best)]
     if not tracks:
         raise BadLogError(path, "there is no position in it")
     return tracks
