@@ -168,6 +168,7 @@ class Profile:
     tells_log_path: bool = PX4_ONLY  # a STATUSTEXT when a log begins
     no_such_item: MissionResult = each(MissionResult.ERROR, MissionResult.INVALID_SEQUENCE)
     numbers_plans: bool = False  # `opaque_id` and `mission_id`, not recorded of 4.7 and 1.14
+    tells_mission_whole: bool = True  # else its item alone, and only with a mission: 1.14.3
     refuses_other_components: bool = PX4_ONLY  # commands to one that there is not get an answer
     protocol_version_command: bool = PX4_ONLY  # REQUEST_PROTOCOL_VERSION is known
     names_unknown_message: bool = COPTER_ONLY  # SET_MESSAGE_INTERVAL: DENIED, else FAILED
@@ -204,6 +205,7 @@ def profile_of(personality: Personality, firmware: Firmware) -> Profile:
         banner=(_RELEASE[firmware], *profile.banner[1:]) if profile.banner else (),
         flight_sw_version=FLIGHT_SW_VERSION[firmware],
         numbers_plans=firmware == "1.15",  # from memory
+        tells_mission_whole=firmware != "1.14",
         parameter_errors=firmware == "4.7",
         refuses_fast_streams=firmware == "4.7",
     )

@@ -286,7 +286,8 @@ class VehicleServer:
                 return self._missions.clear(client, message)
             case m.MissionSetCurrent():
                 refused = self._missions.set_current(client, message)
-                return refused or [Send(None, self._info.mission_current())]
+                current = self._info.mission_current()
+                return refused or ([] if current is None else [Send(None, current)])
             case m.ParamRequestList():
                 banner = self._profile.banner
                 texts = [Send(None, status_text(self._profile, 6, text)) for text in banner]

@@ -65,6 +65,7 @@ PX4_NORMAL: Final = intervals(
         m.PositionTargetLocalNed: 50,
         m.ServoOutputRaw: 50,
         m.RcChannels: 20,
+        m.MissionCurrent: 10,
         m.ManualControl: 5,
         m.VfrHud: 4,
         m.OrbitExecutionStatus: 2,

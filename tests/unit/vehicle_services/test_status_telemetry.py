@@ -83,7 +83,7 @@ def test_board_and_vibration(personality: Personality) -> None:
 
 def test_the_mission_mode_is_told_beside_the_item() -> None:
     for personality, mission, other in (("px4", 4 << 16 | 4 << 24, 4 << 16), ("ardupilot", 3, 4)):
-        bench = Bench("px4" if personality == "px4" else "ardupilot")
+        bench = Bench("px4", firmware="1.15") if personality == "px4" else Bench("ardupilot")
         for number, expected in ((mission, 1), (other, 2)):
             bench.vehicle.custom_mode = number
             told = at_a_rate(bench, m.MissionCurrent)

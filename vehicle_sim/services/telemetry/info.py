@@ -185,7 +185,11 @@ class Info:
     def _open_drone_id_system(self) -> m.Message | None:
         return open_drone_id_system(self._vehicle, self._unix_start_ns)
 
-    def mission_current(self) -> m.Message:
+    def mission_current(self) -> m.Message | None:
+        """A PX4 1.14 tells the item alone, and without a mission nothing."""
+        if not self._profile.tells_mission_whole:
+            seq = self._vehicle.mission_current
+            return m.MissionCurrent(seq, 0, 0, 0, 0, 0, 0) if self._vehicle.plan else None
         total, mission_id, fence_id, rally_id = self._plan_ids()
         return m.MissionCurrent(
             seq=self._vehicle.mission_current,
