@@ -25,7 +25,10 @@ from gcs.operator.errors import ExitError
 ROOT = Path(__file__).parents[2]
 PAGES = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("missions/**/*.md")]
 ABOUT_THE_CODE = ("ARCHITECTURE.md", "CONTRIBUTING.md", "decisions.md")
-MADE_BY_A_READER = {"PID.json", "results.json", "layout.json", "lab.json", "mavgate.toml", "ask.py"}
+MADE_BY_A_READER = {
+    *("PID.json", "results.json", "layout.json", "lab.json"),
+    *("mavgate.toml", "ask.py", "wind.toml"),
+}
 NOT_OURS = {"grep"}
 
 SOURCES = [

@@ -14,7 +14,8 @@ from vehicle_sim.plant.sensors import MEMS, SensorGrade
 BATCH_FROM: Final = 20
 """Vehicles from which numpy is the faster."""
 COMPILED: Final = not isinstance(live, FunctionType)
-"""The kernels are compiled: one after the other they are as fast as numpy's rows, and faster."""
+"""The kernels are compiled: one after the other they are faster than numpy's rows for some hundreds
+of vehicles, and about as fast for 1,000."""
 
 
 def engine_for(
