@@ -47,7 +47,6 @@ def flown(plan: Plan, folder: Path, client: Client, kill: int) -> Campaign:
 
 
 @pytest.mark.thorough
-@pytest.mark.filterwarnings("default")
 def test_a_worker_that_dies_changes_no_row(tmp_path: Path) -> None:
     file = tmp_path / "campaign.toml"
     file.write_text(TEXT, encoding="utf-8")
