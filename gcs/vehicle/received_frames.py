@@ -182,7 +182,7 @@ class VehicleFrames:
             work += self._authorized(telemetry, heard, message, now_ns)
         elif isinstance(message, m.Statustext):
             work += logged(parts.words.text(heard.compid, message, now_ns))
-            work += parts.missions.said(message.text, parts.view(telemetry))
+            work += parts.missions.said(message.text, parts.view(telemetry), now_ns)
         elif isinstance(message, m.AutopilotVersion):
             work.append(Record(record_items.vehicle(telemetry, message, parts.of)))
         elif isinstance(message, m.ControlStatus):

@@ -43,6 +43,7 @@ from gcs.vehicle.missions.jobs.put_fence import PutFence
 from gcs.vehicle.missions.jobs.set_current import SetCurrent, flown_by_mode
 from gcs.vehicle.missions.jobs.start import Start
 from gcs.vehicle.missions.jobs.starting import StartingJob
+from gcs.vehicle.missions.jobs.transfers import BringingJob
 from gcs.vehicle.missions.jobs.upload import ClientUpload, Upload
 from gcs.vehicle.missions.jobs.verify_on_board import Adopt
 from gcs.vehicle.missions.mission_current import MissionTold
@@ -62,7 +63,9 @@ OF_WORD = {"fence": MissionType.FENCE, "rally": MissionType.RALLY}
 """By how a word begins."""
 
 PLAN_RECEIVED = "Flight plan received"
-"""What ArduCopter tells all of a mission that was uploaded (recorded, 4.7)."""
+"""What ArduCopter tells all of a mission that was uploaded, some 0.1 s later (recorded, 4.7)."""
+TEXT_WITHIN_NS: Final = 1_000_000_000
+"""So long after an upload of our own that text is taken for the one of that upload."""
 
 STOPS = frozenset(
     {Event.ABORT, Event.HOLD, Event.LAND, Event.RETURN, Event.DISARM, Event.FORCE_DISARM}
@@ -112,6 +115,8 @@ class Missions:
         self._left = False
         self._taken_ns = -PX4_CHECKS_NS
         """When the vehicle told last that it has taken a mission, of whomever."""
+        self._own_text_until_ns = 0
+        """Until then the text of our own upload may still come."""
         self._was_active = False
         """Whether the vehicle was seen flying the mission that was started last."""
         self.total: int | None = None
@@ -276,6 +281,8 @@ class Missions:
             case MissionAck(type=MissionResult.ACCEPTED, mission_type=MissionType.MISSION):
                 self._taken_ns = now_ns
                 self._told.changed()  # by whomever
+                if isinstance(self.job, BringingJob):
+                    self._own_text_until_ns = now_ns + self._times.real_ns(TEXT_WITHIN_NS)
             case MissionItemReached(seq=seq):
                 work += self._reached(seq)
         if self.job is not None:
@@ -305,9 +312,15 @@ class Missions:
         telemetry = view.telemetry
         return [Send(MissionRequestList(telemetry.sysid, telemetry.compid, MissionType.MISSION))]
 
-    def said(self, text: str, view: VehicleView) -> list[Work]:
-        """A text of the vehicle: ArduPilot's of a mission that it was sent, by whomever."""
+    def said(self, text: str, view: VehicleView, now_ns: int) -> list[Work]:
+        """A text of the vehicle: ArduPilot's of a mission that it was sent, by whomever.
+
+        That of our own upload may come when the mission is flown already.
+        """
         if text != PLAN_RECEIVED:
+            return []
+        if now_ns < self._own_text_until_ns:
+            self._own_text_until_ns = 0
             return []
         self._told.forget_refused()
         if self._on_board is None:

@@ -377,7 +377,18 @@ def acknowledged(script: Script) -> None:
 
 
 def said(script: Script) -> None:
-    script.missions.said(PLAN_RECEIVED, script.view())
+    script.missions.said(PLAN_RECEIVED, script.view(), script.now_ns)
+
+
+def test_the_text_of_an_upload_of_our_own_may_come_when_it_is_flown_already() -> None:
+    """ArduCopter's comes up to 0.1 s later; the one after it is of somebody else's upload."""
+    script = Script()
+    script.upload(BOX)
+    script.state = State.FLYING_MISSION
+    said(script)
+    assert script.missions.items
+    said(script)
+    assert not script.missions.items
 
 
 @pytest.mark.parametrize("uploaded", [acknowledged, said])
