@@ -124,14 +124,22 @@ def _worst(records: Mapping[int, Flight], rows: Mapping[int, Row]) -> str:
             f"<figcaption>{text(p.caption)}</figcaption></figure>"
             for n, p in enumerate(pictures)
         )
-        told = f"{_metres(row.closest_m)} {row.closest_of}; {row.outcome}"
+        told = f"{nearness(row)}; {row.outcome}"
         found = f'<p class="quiet">{text(sentence(row.findings))}.</p>' if row.findings else ""
         parts.append(
             f"<h3>Flight {number} <small>{text(told)}</small></h3>"
-            f'<p class="quiet">{text(inputs_text(row.inputs))}</p>{found}'
+            f'<p class="quiet">{text(_inputs(row.inputs))}</p>{found}'
             f'<div class="pictures">{figures}</div>'
         )
     return "".join(parts)
+
+
+def nearness(row: Row) -> str:
+    """How far it was from leaving its fence, or beyond."""
+    if row.closest_m is None:
+        return "never flew"
+    beyond = row.closest_m < 0.0
+    return f"{abs(row.closest_m):.2f} m {'' if beyond else 'from being '}{row.closest_of}"
 
 
 def _own_ids(svg: str, suffix: str) -> str:
@@ -139,8 +147,13 @@ def _own_ids(svg: str, suffix: str) -> str:
     return svg.replace('id="zone', f'id="z{suffix}-').replace("url(#zone", f"url(#z{suffix}-")
 
 
-def inputs_text(inputs: Mapping[str, Value]) -> str:
-    return ", ".join(f"{name} {value}" for name, value in inputs.items())
+def _inputs(inputs: Mapping[str, Value]) -> str:
+    """Without what is "", which stands for none of it."""
+    return ", ".join(
+        f"{name} {value:.4g}" if isinstance(value, float) else f"{name} {value}"
+        for name, value in inputs.items()
+        if value != ""
+    )
 
 
 def _spreads(told: Summary) -> str:

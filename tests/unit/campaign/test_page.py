@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from gcs.campaign.page import campaign_page, lead, probability
+from gcs.campaign.page import campaign_page, lead, nearness, probability
 from gcs.campaign.sampling import places_of
 from gcs.campaign.statistics import summary
 from tests.unit.campaign.campaigns import Pretended, sampled
@@ -37,3 +37,13 @@ def test_of_a_search_no_probability_is_told(tmp_path: Path) -> None:
     assert probability(told) == ""
     assert " % to " not in campaign_page(plan, told, rows, {})
     assert lead(told) == "None of 10 flights left its fence; the nearest came to 1.00 m."
+
+
+def test_a_flight_that_stayed_inside_is_not_told_as_one_outside(tmp_path: Path) -> None:
+    plan = sampled(tmp_path, "latin", 2)
+    row = Pretended(lambda _: 1.0).row((0, plan.inputs([0.5] * 5)))
+    of = "above the ceiling of inclusion circle 'home'"
+    near = msgspec.structs.replace(row, closest_m=39.66, closest_of=of)
+    beyond = msgspec.structs.replace(row, closest_m=-2.0, closest_of=of)
+    assert nearness(near) == "39.66 m from being above the ceiling of inclusion circle 'home'"
+    assert nearness(beyond) == "2.00 m above the ceiling of inclusion circle 'home'"
