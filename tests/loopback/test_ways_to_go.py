@@ -9,7 +9,7 @@ import pytest
 from gcs import ipc
 from gcs.audit.audit import audit
 from gcs.audit.messages import Tape
-from gcs.gate.policy.parse import parse_policy
+from gcs.gate.policy.parse import DEFAULT, parse_policy
 from gcs.gate.states import State
 from gcs.record.writer import Recorder
 from gcs.session import inputs
@@ -37,8 +37,9 @@ def flown(flight: Flight, word: str = "goto", **fields: object) -> tuple[float, 
     assert flight.done(number) == "complete"
     goal_enu = flight.verdicts(number)[0].goal_enu
     assert goal_enu is not None
-    assert flight.truth_enu() == pytest.approx(goal_enu, abs=0.8)
-    return tuple(metres or 0.0 for metres in goal_enu)
+    goal = tuple(metres or 0.0 for metres in goal_enu)
+    assert math.dist(flight.truth_enu(), goal) <= DEFAULT.arrival.max_radius_m
+    return goal
 
 
 def reported_enu(flight: Flight) -> tuple[float, float, float]:
@@ -83,7 +84,7 @@ def test_forward_amid_a_turn_is_where_the_nose_turns_to(personality: Personality
     assert flown(flight, move_body=(3.0, 0.0, 0.0)) == pytest.approx(
         (east - 3.0, north, up), abs=1e-5
     )
-    assert flight.outcome(turn) == "superseded"
+    assert flight.outcome(turn) == "superseded SUPERSEDED"
     assert nose_deg(flight) == pytest.approx(270.0, abs=TURNED_DEG)
 
 

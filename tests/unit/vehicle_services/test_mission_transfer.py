@@ -16,6 +16,7 @@ from tests.unit.vehicle_services.lossy_upload import (
     waypoints,
 )
 from tests.unit.vehicle_services.test_missions import asked_for, count, item, results
+from vehicle_sim.autopilot.firmware import Firmware
 from vehicle_sim.autopilot.interface import PlanItem
 from vehicle_sim.autopilot.modes import Personality
 from vehicle_sim.effects import Client
@@ -233,8 +234,13 @@ def test_ardupilot_keeps_only_the_parameters_that_it_uses() -> None:
 
 
 def test_ardupilot_does_not_count_home_among_the_items_of_mission_current() -> None:
-    for personality, total in (("px4", 3), ("ardupilot", 2)):
-        bench = Bench("px4" if personality == "px4" else "ardupilot")
+    told: tuple[tuple[Personality, Firmware, int], ...] = (
+        ("px4", "1.14", 0),  # which tells its item alone
+        ("px4", "1.15", 3),
+        ("ardupilot", "4.7", 2),
+    )
+    for personality, firmware, total in told:
+        bench = Bench(personality, firmware=firmware)
         bench.vehicle.plan = OLD
         heard = bench.send(m.MissionSetCurrent(1, 1, 1))
         assert [each.total for each in of(heard, m.MissionCurrent)] == [total]
