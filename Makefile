@@ -32,7 +32,7 @@ demo: $(RUN) ## fly the demonstration: a gated, recorded flight on a simulated v
 quick: lint contracts ## ruff, mypy, import contracts, the tests without process, socket or long flight (about a minute)
 	@sh .ci/beside $(BIN)/mypy '$(BIN)/python -m pytest tests/unit -m "not slow" -n 2 --dist worksteal $(FEWER)'
 
-test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (about 10 minutes on 2 cores)
+test: $(TEST) $(TESTED) ## run the tests, and a share of the long ones (about 6 minutes on 2 cores)
 	@sh .ci/beside '$(WAIT) -m "not thorough" $(FEWER)' '$(COMPUTE) -m "not thorough" $(FEWER)'
 
 thorough: $(TEST) $(TESTED) ## run the long tests: exhaustive, or one thing many times over; as .ci/run does
