@@ -83,9 +83,13 @@ class OperatorControl:
         leaving = self._there.get(operator)
         if leaving is None or operator in self.leaving:
             return []
-        hold = leaving.hold_on_leave and operator == self.in_control
+        hold = self.leaves_held(operator)
         self.leaving[operator] = now_ns + LEAVING_NS if hold else now_ns
         return self._hold("left") if hold else []
+
+    def leaves_held(self, operator: int) -> bool:
+        """Whether the vehicle is held when this operator leaves."""
+        return operator == self.in_control and self._there[operator].hold_on_leave
 
     def lost(self, operator: int, reason: str) -> list[Work]:
         """Its connection ended without a word, perhaps after one: an operator who was in control

@@ -107,7 +107,7 @@ class Operators:
         work: list[Work] = []
         for operator in self.control.farewells(settled, now_ns):
             self.subscriptions.forget(operator)
-            sentence = words if operator == self.control.in_control else self._goes_on()
+            sentence = words if self.control.leaves_held(operator) else self._goes_on()
             work.append(Emit(ipc.Bye(0, log_path, sentence, goes_on=True), operator))
             work += self.control.gone(operator)
         return work
@@ -119,7 +119,7 @@ class Operators:
             for each in self._operations.listed()
             if each.ended_ns is None
         )
-        return "the station goes on" + (f", with {running}" if running else "")
+        return "the station goes on" + (f", with {running}; gcs abort stops it" if running else "")
 
     def _leave(self, operator: int, reason: str, now_ns: int) -> list[Work]:
         if operator == FIRST and not self._keep:

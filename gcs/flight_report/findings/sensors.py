@@ -23,6 +23,8 @@ GYROSCOPE = Limit(0.04, "rad/s", _OWN)
 COMPASS = Limit(30.0, "%", "ArduPilot wiki, Magnetic Interference (the number is from memory)")
 """Of the field's length: motors may change it by less."""
 WINDOW_S = 1.5
+TURNING_RAD_S = 0.05
+"""A vehicle that turns faster is not asked for its gyroscope: the attitude comes too seldom."""
 STEADY_S = 0.5
 """A hover is steady so long after it began."""
 MEMORY = 40
@@ -125,8 +127,9 @@ class SensorsDetector:
                 _turned(a, b) / (t_s - window.began_s)
                 for a, b in zip(window.angles, angles, strict=True)
             )
-            x, y, z = _mean(window.rates)
-            self.rate.add(window.began_s, (x - turned[0], y - turned[1], z - turned[2]))
+            if max(map(abs, turned)) <= TURNING_RAD_S:
+                x, y, z = _mean(window.rates)
+                self.rate.add(window.began_s, (x - turned[0], y - turned[1], z - turned[2]))
 
     def _field(self, gauss: float, t_s: float) -> None:
         if self.fields and t_s - self.fields_s >= WINDOW_S:

@@ -64,6 +64,22 @@ def test_a_vehicle_that_leans_into_the_wind_measures_that() -> None:
     assert "shifted by at most 0" in check(result, "Accelerometer").measured
 
 
+def test_a_turn_is_no_shift_of_the_gyroscope() -> None:
+    """The attitude comes later than the rates that lead to it."""
+
+    def turning() -> Iterator[tuple[float, Fact]]:
+        for t_s, fact in hover(good):
+            if isinstance(fact, Rotation) and STRUCK_S <= t_s < STRUCK_S + 1.5:
+                yield t_s, Rotation((0.0, 0.0, 0.3))
+            elif isinstance(fact, Sample):
+                turned_s = min(max(t_s - 0.4 - STRUCK_S, 0.0), 1.5)
+                yield t_s, Sample("attitude", (0.0, 0.0, 0.3 * 57.29578 * turned_s))
+            else:
+                yield t_s, fact
+
+    assert found(SensorsDetector(), turning()).findings == []
+
+
 def test_one_gust_is_no_shift() -> None:
     """It is in the mean of one window."""
     gust = (0.0, 4.0, -9.80665), (0.0, 0.0, 0.0), 0.5

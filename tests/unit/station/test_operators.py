@@ -228,6 +228,8 @@ class TestLeaving:
         script.forget()
         script.say(ipc.Leave("done"), SECOND)
         assert (in_control(script), holds(script), script.state) == (1, 0, "HOVERING")
+        (bye,) = told.events(script.told, ipc.Bye)
+        assert bye.sentence == "the station goes on", "nothing of a hold that is not waited for"
 
     @pytest.mark.parametrize("hold_on_leave", [False, True])
     def test_one_that_is_lost_in_control_leaves_a_vehicle_that_holds(
