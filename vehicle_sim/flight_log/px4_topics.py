@@ -165,8 +165,8 @@ def _gps_position(now: Snapshot, system: int) -> Values:
 def _trajectory_setpoint(now: Snapshot, system: int) -> Values:
     target = now.target
     yaw = NAN if target.yaw_rad is None else target.yaw_rad
-    places = (target.pos_ned or UNSET, target.v_ned or UNSET, UNSET, UNSET)
-    return (now.time_us, *(axis for place in places for axis in place), yaw, NAN)
+    pos_ned, v_ned = target.pos_ned or UNSET, target.v_ned or UNSET
+    return (now.time_us, *pos_ned, *v_ned, *UNSET, *UNSET, yaw, NAN)
 
 
 def _local_position_setpoint(now: Snapshot, system: int) -> Values:

@@ -164,6 +164,8 @@ class FenceCheck:
         """
         here = Motion.between(pos_ned, pos_ned)
         for zone in self.zones:
+            if _is_inside(zone, here, TOLERANCE_M, TOLERANCE_M, floor_applies):
+                continue  # no `outermost_m` asks for more
             for measure in self._point_measures(zone, here, floor_applies, NO_MARGINS):
                 if not measure.least_m >= self._outermost(measure.face) - allow.of(measure.face):
                     subject = f"{what} {place(pos_ned)}"
@@ -174,9 +176,13 @@ class FenceCheck:
         """The first measure of the way to a predicted stop that breaks its limit; None if none
         does."""
         motion = Motion.between(pos_ned, stop_ned)
-        for measure in self._stop_measures(motion, floor_applies):
-            if self.stop_limit(measure.face).broken_by(measure):
-                return measure
+        beside_m, stacked_m = self._beside_limit.limit_m, self._stacked_limit.limit_m
+        for zone in self.zones:
+            if _is_inside(zone, motion, beside_m, stacked_m, floor_applies):
+                continue  # nearly always, and without an object for each face
+            for measure in self._stop_measures(zone, motion, floor_applies):
+                if self.stop_limit(measure.face).broken_by(measure):
+                    return measure
         return None
 
     def stop_limit(self, face: Face) -> StopLimit:
@@ -319,13 +325,25 @@ class FenceCheck:
             return None
         return zone_refusal(subject, measure, margins.h_m, leg=True)
 
-    def _stop_measures(self, motion: Motion, floor_applies: bool) -> Iterator[Measure]:
-        for zone in self.zones:
-            if zone.inclusion:
-                yield from inclusion_measures(zone, motion, floor_applies=floor_applies)
-                continue
-            p, b = self.policy, self.braking
-            above_m = max(0.0, b.position_error_v_m + p.margin_v_m - p.brake_slack_v_m)
-            measure = swept_body_measure(zone, motion, above_m)
-            if measure is not None:
-                yield measure
+    def _stop_measures(self, zone: Zone, motion: Motion, floor_applies: bool) -> Sequence[Measure]:
+        if zone.inclusion:
+            return inclusion_measures(zone, motion, floor_applies=floor_applies)
+        p, b = self.policy, self.braking
+        above_m = max(0.0, b.position_error_v_m + p.margin_v_m - p.brake_slack_v_m)
+        measure = swept_body_measure(zone, motion, above_m)
+        return () if measure is None else (measure,)
+
+
+def _is_inside(
+    zone: Zone, motion: Motion, beside_m: float, stacked_m: float, floor_applies: bool
+) -> bool:
+    """Whether all of a motion is inside an inclusion zone by these distances from its sides, and
+    from its ceiling and, where it applies, its floor."""
+    if not zone.inclusion:
+        return False
+    a_en, a_up_m, b_en, b_up_m = motion
+    return (
+        zone.ceiling_up_m - max(a_up_m, b_up_m) >= stacked_m
+        and (not floor_applies or min(a_up_m, b_up_m) - zone.floor_up_m >= stacked_m)
+        and zone.shape.inner_clearance(a_en, b_en) >= beside_m
+    )
