@@ -141,6 +141,7 @@ class Leave(msgspec.Struct, frozen=True, tag="leave", tag_field="type"):
     """The operator goes, in good order.  End of file says the same for an operator that is lost."""
 
     reason: str = "quit"
+    hold: bool = False  # hold the vehicle whatever `Join.hold_on_leave` was: a Ctrl-C
 
 
 class Join(msgspec.Struct, frozen=True, tag="join", tag_field="type"):
@@ -476,7 +477,7 @@ class LogInfo(msgspec.Struct, frozen=True):
 
     number: int
     size: int  # bytes
-    time_utc_s: int  # when it was begun, seconds since 1970; 0 = not known
+    time_utc_s: int  # of the last write, seconds since 1970; 0 = not known
 
 
 class LogsEvent(msgspec.Struct, frozen=True, tag="logs", tag_field="type"):

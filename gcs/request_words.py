@@ -130,9 +130,7 @@ class BadAskError(ValueError):
 @dataclass(frozen=True, slots=True)
 class Word:
     """`help`: empty for a word that is never typed.  `given`: arguments, for an example.  `build`
-    makes of the arguments what the word does; None: it sends the request of its name.  `moves`: the
-    vehicle moves, starts or stops its motors, or may fly where it may not now.  Such a word is
-    never offered for one that was mistyped.
+    makes of the arguments what the word does; None: it sends the request of its name.
 
     `gate`: what the gate is asked for, or how that is made.  `stops`: it makes the vehicle safer;
     nothing is to delay it, and where no vehicle is named it is for every one that flies.  `anyone`:
@@ -146,7 +144,6 @@ class Word:
     given: str = ""
     build: Callable[..., Action] | None = None
     at_once: ActsAtOnce = ActsAtOnce.NEVER
-    moves: bool = False
     doer: Doer = Doer.GATE
     gate: gate.Request | Callable[[Ask], gate.Request] | None = None
     stops: bool = False
@@ -263,14 +260,13 @@ def _of_plan(name: str, what: str) -> tuple[Word, ...]:
 
 
 TABLE: Final[tuple[Word, ...]] = (
-    Word("control", "take control of a flying vehicle", moves=True, gate=gate.TakeControl()),
-    Word("arm", "arm the motors", moves=True, gate=gate.Arm()),
+    Word("control", "take control of a flying vehicle", gate=gate.TakeControl()),
+    Word("arm", "arm the motors", gate=gate.Arm()),
     Word(
         "takeoff",
         "climb to UP metres above the take-off point, take control and hover",
         (Argument("UP", ArgumentKind.NUMBER, "up_m"),),
         "2",
-        moves=True,
         gate=_up,
     ),
     Word(
@@ -280,7 +276,6 @@ TABLE: Final[tuple[Word, ...]] = (
         (*_ENU, _YAW),
         "3 0 2",
         _goto,
-        moves=True,
         gate=_to_a_goal,
         needs_control=True,
     ),
@@ -291,7 +286,6 @@ TABLE: Final[tuple[Word, ...]] = (
         (*(Argument(name, ArgumentKind.NUMBER) for name in ("LAT", "LON", "UP")), _AMSL, _YAW),
         "47.397760 8.545650 3",
         _goto_global,
-        moves=True,
         doer=Doer.CONSOLE,
         needs_control=True,
     ),
@@ -301,7 +295,6 @@ TABLE: Final[tuple[Word, ...]] = (
         (*_ENU, _YAW),
         "2 0 0",
         _move,
-        moves=True,
         doer=Doer.CONSOLE,
         needs_control=True,
     ),
@@ -315,7 +308,6 @@ TABLE: Final[tuple[Word, ...]] = (
         ),
         "2",
         _forward,
-        moves=True,
         doer=Doer.CONSOLE,
         needs_control=True,
     ),
@@ -324,7 +316,6 @@ TABLE: Final[tuple[Word, ...]] = (
         "turn the nose, and nothing else; YAW_DEG is clockwise from north",
         (Argument("YAW_DEG", ArgumentKind.DEGREES, "yaw_deg"),),
         "90",
-        moves=True,
         gate=_to_a_goal,
         needs_control=True,
     ),
@@ -347,7 +338,6 @@ TABLE: Final[tuple[Word, ...]] = (
         ),
         "5 1",
         _orbit,
-        moves=True,
         doer=Doer.ORBIT,
         needs_control=True,
     ),
@@ -357,7 +347,6 @@ TABLE: Final[tuple[Word, ...]] = (
         (*_ENU, _FOR_SECONDS),
         "1 0 0 3",
         _velocity,
-        moves=True,
         doer=Doer.CONSOLE,
     ),
     Word(
@@ -366,7 +355,6 @@ TABLE: Final[tuple[Word, ...]] = (
         _ALL,
         build=partial(_stop, "land"),
         at_once=_TYPED,
-        moves=True,
         gate=gate.Land(),
         stops=True,
     ),
@@ -376,7 +364,6 @@ TABLE: Final[tuple[Word, ...]] = (
         _ALL,
         build=partial(_stop, "rtl"),
         at_once=_TYPED,
-        moves=True,
         gate=gate.ReturnHome(),
         stops=True,
     ),
@@ -399,7 +386,7 @@ TABLE: Final[tuple[Word, ...]] = (
         gate=gate.Abort(),
         stops=True,
     ),
-    Word("resume", "after a hold: hover under our control", moves=True, gate=gate.Resume()),
+    Word("resume", "after a hold: hover under our control", gate=gate.Resume()),
     Word(
         "photo",
         "take a picture; moves are refused meanwhile",
@@ -411,7 +398,6 @@ TABLE: Final[tuple[Word, ...]] = (
         "stop the motors on the ground; --force asks for it in the air",
         (Argument("--force", ArgumentKind.FLAG, "force", optional=True),),
         at_once=ActsAtOnce.MARKED,
-        moves=True,
         gate=lambda ask: gate.Disarm(ask.force),
         anyone=True,
     ),
@@ -420,14 +406,12 @@ TABLE: Final[tuple[Word, ...]] = (
         "ask for a flight mode by the autopilot's own name",
         (Argument("NAME", ArgumentKind.NAME, "mode"),),
         "LOITER",
-        moves=True,
     ),
     Word(
         "fence",
         "switch the fence, where the policy allows it (the lab's does)",
         (Argument("on|off", ArgumentKind.SWITCH, "on"),),
         "off",
-        moves=True,
         gate=lambda ask: gate.SwitchFence(ask.on),
     ),
     Word(
@@ -440,7 +424,6 @@ TABLE: Final[tuple[Word, ...]] = (
     Word(
         "mission start",
         "fly the mission on board",
-        moves=True,
         doer=Doer.JOB,
         gate=gate.StartMission(),
         needs_control=True,
@@ -458,7 +441,6 @@ TABLE: Final[tuple[Word, ...]] = (
         _FILE,
         "missions/demo.toml",
         _mission_fly,
-        moves=True,
         doer=Doer.CONSOLE,
     ),
     Word(
@@ -564,7 +546,6 @@ REQUESTS: Final[Mapping[str, Word]] = {
 STOPS: Final = frozenset(name for name, word in REQUESTS.items() if word.stops)
 ALWAYS_HEARD: Final = STOPS | {name for name, word in REQUESTS.items() if word.anyone}
 """Requests of any operator, in control or not."""
-MOVES: Final = frozenset(word.name for word in WORDS if word.moves)
 
 
 def doer_of(word: str) -> Doer:

@@ -180,10 +180,7 @@ def _with_additions(entry: Entry) -> click.Command:
 def _unknown(name: str, known: Sequence[str]) -> str:
     import difflib
 
-    from gcs.request_words import MOVES
-
-    harmless = [each for each in known if each not in MOVES]
-    near = difflib.get_close_matches(name, harmless, n=1)
+    near = difflib.get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]!r}?" if near else "`gcs --help` lists them"
     return f"no command {name!r}; {hint}"
 

@@ -134,7 +134,7 @@ def run_over(
             code = task(dialogue, display)
             dialogue.wait_until(lambda: not standstill.stopping, min(how.wait_s, STANDS_WAIT_S))
         except Interrupted:
-            ended = dialogue.leave("interrupted")
+            ended = dialogue.leave("interrupted", hold=True)
             display.clear()
             for line in event_text.bye_lines(ended.bye) if ended.bye else ():
                 click.echo(line, err=True)

@@ -58,7 +58,7 @@ def _look(
     if as_json:
         click.echo(ipc.encode(report).decode().rstrip())
     else:
-        click.echo("\n".join(lines(report)))
+        click.echo("\n".join(lines(report, dialogue.snapshot, dialogue.number)))
     return ExitCode.DIFFERENT if report.fails else ExitCode.DONE
 
 

@@ -14,7 +14,7 @@ from gcs.enu_text import signed_enu
 from gcs.exit_codes import ExitCode
 from gcs.operator.dialogue import Dialogue
 from gcs.operator.preflight import waiting
-from gcs.operator.text.control_text import control_words
+from gcs.operator.text.control_text import as_typed_now, control_words
 from gcs.operator.text.event_text import whole_degrees
 
 SLOW_VALUES_WAIT_S = 1.5
@@ -85,6 +85,7 @@ def rows(
     conditions = f" ({', '.join(seen.conditions)})" if seen.conditions else ""
     flown = {each.name: each for each in bridge.vehicles} if bridge else {}
     others = [name for name in seen.vehicles if name != seen.vehicle and name not in flown]
+    mends = [as_typed_now(each, seen, number) for each in seen.mends]
     unverified = [each for each in bridge.clients if not each.verified] if bridge else []
     return [
         ("vehicle", seen.vehicle),
@@ -100,7 +101,7 @@ def rows(
         ("gps", f"{seen.gps or '-'}, estimator {seen.estimator or '-'}"),
         ("battery", f"{_fixed(seen.battery_pct, '%', 0)}, {_fixed(seen.battery_v, 'V', 1)}"),
         ("failsafes", "\n".join(seen.failsafes) or "not read yet"),
-        *([("what mends them", "\n".join(seen.mends))] if seen.mends else []),
+        *([("what mends them", "\n".join(mends))] if mends else []),
         ("link", _link(seen)),
         ("heartbeat", f"{_fixed(seen.heartbeat_age_s, 's', 1)} ago"),
         ("log", seen.log_path or "not recorded"),

@@ -41,7 +41,7 @@ def vehicle_log() -> None:
 @vehicle_log.command("list", cls=MeetsVehicle, epilog=f"Example: gcs vehicle-log list\n\n{EXITS}")
 @with_options(*LINK_OPTIONS)
 def list_(**to: Unpack[ToVehicle]) -> None:
-    """List the logs: number, bytes, when each was begun (UTC)."""
+    """List the logs: number, bytes, when each was last written to (UTC)."""
     from gcs.cli.param.talk import with_vehicle
 
     def task(talk: Talk) -> ExitCode:
@@ -49,7 +49,7 @@ def list_(**to: Unpack[ToVehicle]) -> None:
         if to["as_json"]:
             talk.say(msgspec.json.encode(logs).decode())
         else:
-            lines = [f"{each.number:>5} {each.size:>12}  {_begun(each)}" for each in logs]
+            lines = [f"{each.number:>5} {each.size:>12}  {_written(each)}" for each in logs]
             talk.say("\n".join(lines) or "no logs", err=not logs)
         return ExitCode.DONE if logs else ExitCode.DIFFERENT
 
@@ -212,7 +212,7 @@ def _crc(path: Path) -> int:
     return crc ^ 0xFFFFFFFF
 
 
-def _begun(log: ipc.LogInfo) -> str:
+def _written(log: ipc.LogInfo) -> str:
     if not log.time_utc_s:
         return "-"
     return datetime.fromtimestamp(log.time_utc_s, UTC).strftime("%Y-%m-%d %H:%M:%S")

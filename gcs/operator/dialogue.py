@@ -220,8 +220,8 @@ class Dialogue(Conversation):
 
     # ------------------------------------------------------------------------- leaving
 
-    def leave(self, reason: str = "quit") -> StationEnded:
-        """Say good-bye and wait: the station holds the vehicle first.
+    def leave(self, reason: str = "quit", *, hold: bool = False) -> StationEnded:
+        """Say good-bye and wait: the station holds the vehicle first, of a one-shot with `hold`.
 
         A second Ctrl-C ends the waiting.
         """
@@ -229,6 +229,6 @@ class Dialogue(Conversation):
         self.unwatch()
         self._interrupts.forget()
         if self.ended is None:
-            self._connection.send(ipc.Leave(reason))
+            self._connection.send(ipc.Leave(reason, hold))
         self.wait_until(lambda: self.ended is not None or bool(self._interrupts.name), LEAVE_WAIT_S)
         return self._connection.close()

@@ -90,6 +90,9 @@ def parse_arguments(word: Word, typed: Sequence[str]) -> Action:
     texts = [text for text in typed if text not in flags]
     if unknown := next(filter(_OPTION.fullmatch, texts), ""):
         raise _wrong(word, f"no option {unknown}")
+    if "all" in texts and not word.arguments:
+        of_all = ", ".join(each.name for each in WORDS if each.stops)
+        raise LineError(f"{word.name}: is for one vehicle at a time", f"all is for: {of_all}")
     required = sum(not argument.optional for argument in word.arguments)
     if not required <= len(texts) <= len(word.arguments) - len(flags):
         raise _wrong(word, f"expected {_expectation(word)}, got {len(texts) or 'nothing'}")
@@ -130,8 +133,10 @@ def _find(tokens: list[str]) -> tuple[Word, list[str]]:
         return WORD_BY_NAME[tokens[0]], tokens[1:]
     seconds = [name for name in WORD_BY_NAME if name.startswith(tokens[0] + " ")]
     if seconds:
-        raise LineError(f"{tokens[0]}: expected one of: {', '.join(seconds)}", f"try {seconds[0]}")
-    near = nearest(tokens[0], (word.name for word in WORDS if not word.moves))
+        near = nearest(two, seconds)
+        hint = f"did you mean {near}?" if near and len(tokens) > 1 else f"try {seconds[0]}"
+        raise LineError(f"{tokens[0]}: expected one of: {', '.join(seconds)}", hint)
+    near = nearest(tokens[0], {name.split()[0] for name in WORD_BY_NAME})
     hint = f"did you mean {near}?" if near else f"words: {', '.join(WORD_BY_NAME)}"
     raise LineError(f"{tokens[0]}: not a word of ours", hint)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gcs import ipc
+from gcs.operator.text.control_text import as_typed_now
 
 SIGNS = {"pass": "pass", "caution": "CAUTION", "fail": "FAIL"}
 
@@ -23,13 +24,16 @@ def to_read(report: ipc.PreflightReport) -> Iterator[list[ipc.Ask]]:
         yield [ipc.Ask(0, "mission_check")]
 
 
-def lines(report: ipc.PreflightReport) -> Iterator[str]:
-    """A line a row, with the commands that mend it below, and a last line that sums up."""
+def lines(
+    report: ipc.PreflightReport, seen: ipc.Snapshot | None = None, me: int = 0
+) -> Iterator[str]:
+    """A line a row, with the commands that mend it below, and a last line that sums up.  `seen`:
+    who is in control of the station; `me` is the operator who reads it."""
     width = max(len(row.name) for row in report.rows)
     for row in report.rows:
         yield f"{SIGNS[row.verdict]:<8} {row.name:<{width}}  {row.sentence}"
         for command in row.remedies:
-            yield f"{'':8} {'':{width}}  > {command}"
+            yield f"{'':8} {'':{width}}  > {as_typed_now(command, seen, me)}"
     yield f"preflight: {summary(report)}"
 
 

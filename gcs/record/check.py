@@ -59,8 +59,11 @@ class CheckResult:
             self.findings.append(Finding(kind, text))
 
 
-def check(path: Path, progress: Progress | None = None) -> CheckResult:
-    """Read the whole file, then what its index leads to.  Raises BadRecordError and OSError."""
+def check(
+    path: Path, progress: Progress | None = None, *, still_written: bool = False
+) -> CheckResult:
+    """Read the whole file, then what its index leads to.  One that is still written need not be
+    closed.  Raises BadRecordError and OSError."""
     reading = Reading(path, progress)
     checking = _Checking(CheckResult(str(path), reading.condition.size))
     for record in reading:
@@ -73,7 +76,7 @@ def check(path: Path, progress: Progress | None = None) -> CheckResult:
                 checking.schema(record)
             case _:
                 pass
-    return checking.finish(reading.condition, path)
+    return checking.finish(reading.condition, path, still_written)
 
 
 class _Checking:
@@ -128,12 +131,12 @@ class _Checking:
             topic = self._channels[message.channel_id].topic
             result.add("message", f"message {result.messages}, {topic}: {said}")
 
-    def finish(self, condition: Condition, path: Path) -> CheckResult:
+    def finish(self, condition: Condition, path: Path, still_written: bool) -> CheckResult:
         result = self._result
         result.channels = len(self._channels)
         if self._first_ns is not None:
             result.seconds = (self._last_ns - self._first_ns) / 1e9
-        if not condition.closed:
+        if not condition.closed and not still_written:
             what = "its last chunk breaks off" if condition.broken_chunk else "its end is missing"
             result.add("file", f"it was not closed: {what}")
         if condition.damaged:

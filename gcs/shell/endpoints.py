@@ -93,6 +93,11 @@ def parse_endpoint(text: str) -> Endpoint:
                 return _serial(text, device, form)
             return _network(text, rest, form)
     scheme = text.partition(":")[0]
+    if scheme == "udp":  # udp:// is MAVSDK's older spelling
+        place = text.removeprefix("udp://")
+        place = LOOPBACK + place if place.startswith(":") else place
+        hint = f"udpin://{place} to listen there, or udpout://{place} to send there first"
+        raise EndpointError(text, "does not say which side begins", hint)
     known = [form.example for form in FORMS if scheme and form.prefix.startswith(scheme)]
     examples = known or [form.example for form in FORMS if form.prefix.endswith("://")]
     raise EndpointError(text, "no known kind of endpoint", "such as " + ", ".join(examples))

@@ -9,7 +9,7 @@ the vehicle is the gate's (`gcs.gate.states.Control`).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gcs import ipc
 from gcs.bridge.bridge import FIRST_NUMBER
@@ -77,12 +77,14 @@ class OperatorControl:
         joined = self._there[operator] = Operator(operator, name, hold_on_leave)
         return [Log(Level.DEBUG, NODE, f"{joined.label} joined"), self._told()]
 
-    def leave(self, operator: int, now_ns: int) -> list[Work]:
-        """It goes in good order: the gate holds the vehicle where that is wanted, and once it is
-        seen to hold, `farewells` says good-bye."""
+    def leave(self, operator: int, hold: bool, now_ns: int) -> list[Work]:
+        """It goes in good order: the gate holds the vehicle where that is wanted, now or when it
+        joined, and once it is seen to hold, `farewells` says good-bye."""
         leaving = self._there.get(operator)
         if leaving is None or operator in self.leaving:
             return []
+        if hold:
+            self._there[operator] = replace(leaving, hold_on_leave=True)
         hold = self.leaves_held(operator)
         self.leaving[operator] = now_ns + LEAVING_NS if hold else now_ns
         return self._hold("left") if hold else []

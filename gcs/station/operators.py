@@ -121,10 +121,10 @@ class Operators:
         )
         return "the station goes on" + (f", with {running}; gcs abort stops it" if running else "")
 
-    def _leave(self, operator: int, reason: str, now_ns: int) -> list[Work]:
+    def _leave(self, operator: int, reason: str, hold: bool, now_ns: int) -> list[Work]:
         if operator == FIRST and not self._keep:
             return [EndSession(reason)]
-        return [*self._not_read_on(operator), *self.control.leave(operator, now_ns)]
+        return [*self._not_read_on(operator), *self.control.leave(operator, hold, now_ns)]
 
     def _not_read_on(self, operator: int) -> list[Work]:
         """It is gone, or goes: nobody waits for what it reads of a vehicle.  What it has set is
@@ -168,8 +168,8 @@ class Operators:
                 text = f"Keyboard: {plain_enu(goal_enu)}"
                 goal = ipc.OperatorGoal(operator, goal_enu, yaw_deg, self.screens.chosen(operator))
                 return [Log(Level.INFO, "keyboard_manager", text), Emit(goal)]
-            case ipc.Leave(reason):
-                return self._leave(operator, reason, now_ns)
+            case ipc.Leave(reason, hold):
+                return self._leave(operator, reason, hold, now_ns)
             case ipc.Subscribe(names):
                 return [*self.subscriptions.subscribe(operator, names, now_ns)]
             case ipc.ListOperations(number):

@@ -61,17 +61,19 @@ def next_of(seen: ipc.Snapshot) -> int:
 
 def flying(seen: ipc.Snapshot) -> int:
     """How many are in the air and heard."""
-    shown = (
-        seen.state != State.NO_VEHICLE.name
-        and bool(seen.armed)
-        and seen.landed != LandedState.ON_GROUND.name
-    )
-    others = [
-        each
-        for each in seen.others
-        if each.armed and not each.on_ground and each.state != State.NO_VEHICLE.name
-    ]
-    return int(shown) + len(others)
+    on_ground = [seen.landed == LandedState.ON_GROUND.name, *(x.on_ground for x in seen.others)]
+    return sum(up and not down for up, down in zip(_armed(seen), on_ground, strict=True))
+
+
+def armed(seen: ipc.Snapshot) -> int:
+    """How many are armed and heard, on the ground or in the air."""
+    return sum(_armed(seen))
+
+
+def _armed(seen: ipc.Snapshot) -> list[bool]:
+    """Of each, the one that is shown first."""
+    all_: list[ipc.Snapshot | ipc.OtherVehicle] = [seen, *seen.others]
+    return [bool(each.armed) and each.state != State.NO_VEHICLE.name for each in all_]
 
 
 def too_close(other: ipc.OtherVehicle) -> bool:

@@ -1,4 +1,4 @@
-"""How the screen is left: a question in the air, a good-bye to the station, and the terminal as it
+"""How the screen is left: a question while armed, a good-bye to the station, and the terminal as it
 was."""
 
 from __future__ import annotations
@@ -72,9 +72,9 @@ class LeavingApp(App[None]):
         os._exit(ExitCode.INTERRUPTED)
 
     def action_leave(self) -> None:
-        """Leave; with the vehicle in the air the first time only ask."""
+        """Leave; with the vehicle armed the first time only ask."""
         question = self.query_one("#question")
-        if self.scene.held_if_left and not question.display and not self._leaving:
+        if self.scene.left_armed and not question.display and not self._leaving:
             question.display = True
         else:
             self._leave("quit")

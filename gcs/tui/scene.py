@@ -11,6 +11,7 @@ from typing import NamedTuple
 from msgspec import structs
 
 from gcs import ipc, request_words
+from gcs.gate.refusal import Code
 from gcs.gate.states import State
 from gcs.operator.conversation import Conversation, TrackedRequest
 from gcs.operator.standstill import Standstill
@@ -120,11 +121,11 @@ class Scene:
         return None if seen is None or held else seen.active_goal_enu
 
     @property
-    def held_if_left(self) -> bool:
-        """In the air, and leaving has it held: this operator commands it, or has started the
-        station, which ends with it."""
+    def left_armed(self) -> bool:
+        """Leaving leaves it armed, held where it flies: this operator commands it, or has started
+        the station, which ends with it."""
         seen = self.snapshot
-        if seen is None or not fleet.flying(seen):
+        if seen is None or not fleet.armed(seen):
             return False
         commands = seen.in_control is not None and seen.in_control.client == self.talk.number
         return commands or self.talk.number == 1  # `Hello.client`: who has started the station
@@ -304,6 +305,8 @@ def _refused_words(label: str, event: ipc.VerdictEvent) -> str:
     if event.outcome != REFUSED:
         return ""
     sentence = event_text.refused_by_rule(event) or event.sentence
+    if event.code == Code.BUSY:
+        sentence = f"{sentence}; wait until it is complete, or hold first"
     why = event_text.reason(REFUSED, event.code, sentence)
     told = f"refused {event.code} {label}"
     return f"{told}: {why}" if why else told

@@ -15,7 +15,15 @@ from gcs.cli.log.import_export import cannot_write, export_log, import_log
 from gcs.cli.log.replay import replay
 from gcs.cli.log.report import report
 from gcs.cli.log.rewrite import compact, cut, merge, recover
-from gcs.cli.records.files import LAST, RECORD, chosen, one_record, reading_progress, told
+from gcs.cli.records.files import (
+    LAST,
+    RECORD,
+    chosen,
+    one_record,
+    reading_progress,
+    still_written,
+    told,
+)
 from gcs.exit_codes import ExitCode
 
 if TYPE_CHECKING:
@@ -125,9 +133,10 @@ def layout(file: Path | None, output: Path | None, purpose: Purpose, last: bool)
 
 
 def _print(flight: FlightInfo) -> None:
-    state = "complete" if flight.closed else "NOT CLOSED: its writer was killed or is still writing"
+    writing = "" if flight.closed else still_written(Path(flight.path))
+    state = "complete" if flight.closed else writing or "NOT CLOSED: its writer was killed"
     click.echo(f"{flight.path}: {flight.size / 1e6:.2f} MB, {state}")
-    if not flight.closed:
+    if not flight.closed and not writing:
         click.echo("  viewers refuse such a file: recover it first")
         click.echo(f"  hint: gcs log recover {flight.path} -o whole.mcap")
     if flight.damaged:
@@ -189,19 +198,21 @@ def check(ctx: click.Context, files: tuple[Path, ...], as_json: bool) -> None:
     good = True
     for file in files:
         with told(file), reading_progress(file, "checking") as progress:
-            result = check_file(file, progress)
+            writing = still_written(file)
+            result = check_file(file, progress, still_written=bool(writing))
         good = good and result.good
         if as_json:
             name = result.path.encode(errors="backslashreplace").decode()
             values = {**msgspec.to_builtins(result), "path": name, "good": result.good}
             click.echo(msgspec.json.encode(values).decode())
         else:
-            _print_check(result)
+            _print_check(result, writing)
     ctx.exit(ExitCode.DONE if good else ExitCode.DIFFERENT)
 
 
-def _print_check(result: CheckResult) -> None:
+def _print_check(result: CheckResult, writing: str) -> None:
     word = "good" if result.good else "NOT GOOD"
+    word += f", {writing}" if writing else ""
     click.echo(
         f"{result.path}: {word}: {result.messages} messages on {result.channels} channels, "
         f"{result.seconds:.1f} s"

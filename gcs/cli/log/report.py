@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from gcs.cli.options import SYSID
-from gcs.cli.records.files import LAST, RECORD, one_record, reading_progress, told
+from gcs.cli.records.files import LAST, RECORD, one_record, reading_progress, still_written, told
 from gcs.exit_codes import ExitCode
 from gcs.operator.errors import ExitError
 
@@ -67,6 +67,8 @@ def report(
     if as_json:
         click.echo(report_json(flight).decode())
         return
+    if writing := still_written(file):
+        click.echo(f"{file}: {writing}: the flight so far")
     for line in lines_of(flight):
         click.echo(line)
     click.echo(f"{output}: open it in a browser")

@@ -151,7 +151,7 @@ def run_word(word: str, *arguments: str | int, **to: Unpack[ToVehicle]) -> None:
     assert isinstance(action, SendRequests)
     for request in action.requests:
         UTF8.convert(request.path, None, None)
-    setup, how = set_up("mission", label(action.requests[0]), to)
+    setup, how = set_up(word.partition(" ")[0], label(action.requests[0]), to)
     task = oneshot_session.sending(action, to["wait"])
     code = oneshot_session.run(setup, how, task)
     click.get_current_context().exit(code)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from gcs.mcap_file.reader import Progress
+    from gcs.shell.stations import Description
 
 
 class FileOfKind(click.Path):
@@ -54,7 +55,25 @@ def newest(files: Sequence[Path] = ()) -> Path:
     found = files or list(folder.glob("*.mcap"))
     if not found:
         raise ExitError(ExitCode.BAD_FILE, f"{folder}/: no record in it", "name one")
-    return max(found, key=lambda file: file.stat().st_mtime_ns)
+    begun_ns = {file: station.started_ns for file, station in _being_written().items()}
+
+    def age(file: Path) -> int:
+        """A record that is still written is as old as its station: a flight since is newer."""
+        return begun_ns.get(file.resolve()) or file.stat().st_mtime_ns
+
+    return max(found, key=age)
+
+
+def still_written(file: Path) -> str:
+    """That a running station writes this record, in words; empty where none does."""
+    station = _being_written().get(file.resolve())
+    return f"still being written by the running station of process {station.pid}" if station else ""
+
+
+def _being_written() -> dict[Path, Description]:
+    from gcs.operator.joined import running_stations
+
+    return {Path(each.log_path).resolve(): each for each in running_stations() if each.log_path}
 
 
 def one_record(file: Path | None, *, last: bool) -> Path:

@@ -262,7 +262,7 @@ class Plain:
         report = self._dialogue.look_before_flight()
         self._preflight_fails |= report.fails
         if not self._config.as_json:  # else it was told as the event that it is
-            for line in preflight.lines(report):
+            for line in preflight.lines(report, self._dialogue.snapshot, self._dialogue.number):
                 self._out(line)
 
     def _show_help(self) -> None:

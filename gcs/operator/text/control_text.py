@@ -32,6 +32,12 @@ def control_words(seen: ipc.Snapshot, me: int, *, short: bool = False) -> str:
     return PILOT if short else f"{PILOT} or another station; of this station: {operator}"
 
 
+def as_typed_now(command: str, seen: ipc.Snapshot | None, me: int) -> str:
+    """A command that is hinted at, so that it is not refused while somebody else is in control."""
+    other = seen is not None and seen.in_control is not None and seen.in_control.client != me
+    return f"{command} --take" if other and "gcs param get" not in command else command
+
+
 def change_words(before: ipc.OperatorInfo | None, now: ipc.OperatorInfo | None, me: int) -> str:
     """What a screen says when control of the station has passed to another operator; empty if it
     has not.  Going from nobody to this operator is no news to it: it asked for something."""

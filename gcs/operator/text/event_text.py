@@ -92,7 +92,7 @@ def state_line(seen: ipc.Snapshot | None, number: int, name: str = "state") -> s
 
     `state: HOVERING, control OURS, severity NOMINAL, at E +0.00 N +0.00 U +2.00 m, ...`
     """
-    if seen is None:
+    if seen is None or not seen.vehicle:
         return f"{name}: nothing heard yet"
     return f"{name}: {vehicle_words(seen)}, in control: {control_words(seen, number)}"
 

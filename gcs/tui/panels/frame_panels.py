@@ -71,14 +71,20 @@ def typing(line: CommandLine, columns: int) -> Text:
 
 
 def question(scene: Scene) -> Text:
-    """Before the operator of a vehicle in the air leaves it."""
+    """Before the operator of an armed vehicle leaves it."""
     count = 1 if scene.snapshot is None else fleet.flying(scene.snapshot)
-    what, leave = "The vehicle is", "Leave it?  It is told to hold, and nobody flies it then."
+    what, leave = (
+        "The vehicle is in the air.",
+        "Leave it?  It is told to hold, and nobody flies it then.",
+    )
     if count > 1:
-        what = f"{count} vehicles are"
+        what = f"{count} vehicles are in the air."
         leave = "Leave them?  They are told to hold, and nobody flies them then."
+    elif not count:
+        what = "The motors are armed, on the ground."
+        leave = "Leave?  They stay armed until the vehicle disarms by itself; disarm first."
     return Text.assemble(
-        (f"{what} in the air.\n\n", "bold"),
+        (f"{what}\n\n", "bold"),
         f"{leave}\n\n",
         ("q or y", look.PENDING), " leaves    ",
         ("any other key", look.PENDING), " stays    ",

@@ -8,11 +8,11 @@ import msgspec
 import pytest
 
 from gcs import ipc
-from gcs.cli import oneshot_session, running
+from gcs.cli import oneshot_session, running, status
 from gcs.cli.oneshot_session import OneShotConfig, sending
 from gcs.config import StationConfig
 from gcs.exit_codes import ExitCode
-from gcs.operator import joined
+from gcs.operator import joined, preflight
 from gcs.operator.client import StationClient
 from gcs.operator.line_parser import parse_line
 from gcs.operator.text.event_text import operation_line
@@ -110,6 +110,16 @@ def test_what_is_held_or_flown_by_others_stays_so_until_that_is_asked_for(
     shown = capsys.readouterr()
     assert f"goto 3 0 2: refused {code}: " in shown.out
     assert f"  hint: {hint}\n" in shown.err
+
+
+def test_what_is_hinted_at_is_not_refused_where_somebody_else_is_in_control() -> None:
+    mends = ["gcs param set NAV_DLL_ACT 2"]
+    seen = msgspec.structs.replace(in_state("HOVERING").snapshot(), mends=mends)
+    report = ipc.PreflightReport(1, [ipc.PreflightRow("failsafes", "fail", "weak", mends)])
+    for client, ending in ((1, " --take"), (2, "")):
+        now = msgspec.structs.replace(seen, in_control=ipc.OperatorInfo(client, "gcs fly"))
+        assert dict(status.rows(now, 2))["what mends them"] == mends[0] + ending
+        assert any(line.endswith(mends[0] + ending) for line in preflight.lines(report, now, 2))
 
 
 def test_control_is_taken_over_only_when_that_is_asked_for(connection: FakeConnection) -> None:

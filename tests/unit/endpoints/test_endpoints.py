@@ -46,7 +46,8 @@ def test_an_endpoint_is_understood(text: str, endpoint: Endpoint) -> None:
     [
         ("", "no known kind", "udpin://"),
         ("14550", "no known kind", "udpin://"),
-        ("udp://:14550", "no known kind", "udpin://127.0.0.1"),
+        ("udp://:14550", "which side begins", "udpin://127.0.0.1:14550 to listen"),
+        ("udp://h:1", "which side begins", "udpout://h:1 to send"),
         ("ftp://host:21", "no known kind", "tcpout://"),
         ("udpin://14550", "expected HOST:PORT", "udpin://127.0.0.1:14540"),
         ("tcp:host", "expected HOST:PORT", "tcp:127.0.0.1:5760"),

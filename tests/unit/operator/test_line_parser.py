@@ -135,21 +135,26 @@ def test_what_is_a_number(typed: str, number: float) -> None:
     assert requests(f"takeoff {typed}") == (ipc.Ask(0, "takeoff", up_m=number),)
 
 
-@pytest.mark.parametrize("word", ["amr", "alm", "ar", "takeof", "got", "modes", "lnd"])
-def test_a_word_that_moves_the_vehicle_is_never_offered_for_another(word: str) -> None:
-    with pytest.raises(LineError) as wrong:
-        parse_line(word)
-    assert "did you mean" not in wrong.value.hint
-    assert wrong.value.hint.startswith("words: ")
-
-
 @pytest.mark.parametrize(
-    ("typed", "meant"), [("aborrt", "abort"), ("hodl", "hold"), ("stat", "state")]
+    ("typed", "hint"),
+    [
+        ("aborrt", "did you mean abort?"),
+        ("hodl", "did you mean hold?"),
+        ("stat", "did you mean state?"),
+        ("gotoo 3 0 2", "did you mean goto?"),
+        ("takeof 2", "did you mean takeoff?"),
+        ("hedding 90", "did you mean heading?"),
+        ("misson fly a.toml", "did you mean mission?"),
+        ("mission uplod a.toml", "did you mean mission upload?"),
+        ("mission", "try mission upload"),
+        ("xyzzy", "words: control, arm, takeoff"),
+        ("arm all", "all is for: land, rtl, hold, abort"),
+    ],
 )
-def test_one_that_stops_or_tells_is(typed: str, meant: str) -> None:
+def test_a_hint_is_of_the_words_that_may_stand_there(typed: str, hint: str) -> None:
     with pytest.raises(LineError) as wrong:
         parse_line(typed)
-    assert wrong.value.hint == f"did you mean {meant}?"
+    assert wrong.value.hint.startswith(hint)
 
 
 @pytest.mark.parametrize("line", ["ABORT", "Abort", "abort  # now!"])

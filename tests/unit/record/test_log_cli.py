@@ -11,7 +11,9 @@ from typing import Any
 import pytest
 from mcap.opcode import Opcode
 
+from gcs.operator import joined
 from gcs.record.viewer.layout import ANY_FLIGHT, layout
+from gcs.shell.stations import Description
 from tests.unit.cli.command_line import Ended, gcs
 from tests.unit.record.flights import (
     MS,
@@ -129,6 +131,24 @@ def test_info_json_is_for_programs(flight: Path) -> None:
     assert (decision["request_id"], decision["outcome"]) == (7, "refused")
     assert found["metadata"] == {"versions": {"mavgate": "0"}}
     assert found["gaps"] == []
+
+
+def test_a_record_that_a_station_still_writes_is_not_broken_and_no_newer_than_its_station(
+    flight: Path, killed_flight: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    old, new = tmp_path / "old.mcap", tmp_path / "new.mcap"
+    new.write_bytes(flight.read_bytes())
+    old.write_bytes(killed_flight.read_bytes())  # written to last
+    begun_ns = new.stat().st_mtime_ns - 1
+    station = Description(4711, 1, [], log_path=str(old), started_ns=begun_ns)
+    monkeypatch.setattr(joined, "running_stations", lambda: [station])
+    assert gcs_log("info", "--last", old, new).output.startswith(f"{new}: ")
+    for command in ("info", "check", "report"):
+        ended = gcs_log(command, old)
+        assert ended.exit_code == 0, ended.output
+        assert "still being written by the running station of process 4711" in ended.output
+        assert "NOT" not in ended.output
+        assert "gcs log recover" not in ended.output
 
 
 def test_info_works_on_a_killed_file_and_says_what_to_do(killed_flight: Path) -> None:

@@ -231,6 +231,21 @@ class TestLeaving:
         (bye,) = told.events(script.told, ipc.Bye)
         assert bye.sentence == "the station goes on", "nothing of a hold that is not waited for"
 
+    def test_an_interrupted_one_shot_leaves_the_vehicle_held_if_it_was_in_control(self) -> None:
+        script = Script().hovering()
+        for client, taken in ((SECOND, 1), (SECOND + 1, 0)):
+            join(script, client, hold_on_leave=False)
+            if taken:
+                script.ask("station_take", client=client)
+            script.forget()
+            script.say(ipc.Leave("interrupted", hold=True), client)
+            assert holds(script) == taken
+            script.mode = wire.LOITER
+            script.run(0.3)
+            (bye,) = told.events(script.told, ipc.Bye)
+            assert ("AUTO.LOITER" in bye.sentence) == bool(taken)
+            assert in_control(script) == 1
+
     @pytest.mark.parametrize("hold_on_leave", [False, True])
     def test_one_that_is_lost_in_control_leaves_a_vehicle_that_holds(
         self, hold_on_leave: bool

@@ -217,6 +217,21 @@ def test_whoever_flies_is_asked_before_leaving(keys: str, leaves: int, aborts: i
     flown(script)
 
 
+def test_who_leaves_it_armed_on_the_ground_is_asked_too() -> None:
+    async def script(app: FlyApp, station: ListeningStation, pilot: Pilot[None]) -> None:
+        station.station.armed = True
+        station.fly(0.1)
+        await pilot.pause()
+        await pilot.press("q")
+        await drawn(app, pilot)
+        assert "The motors are armed, on the ground." in screen_text(app)
+        assert not any(isinstance(each, ipc.Leave) for each in station.sent)
+        await pilot.press("q")
+        assert isinstance(station.sent[-1], ipc.Leave)
+
+    flown(script)
+
+
 @pytest.mark.parametrize(("client", "asks"), [(1, True), (7, False)])
 def test_a_looker_on_is_asked_where_the_station_ends_with_its_screen(
     client: int, asks: bool
