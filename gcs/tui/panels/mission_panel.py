@@ -38,8 +38,8 @@ def _verdict(scene: Scene, columns: int) -> list[tuple[str, str]]:
     style = look.ANSWER.get(last.kind, look.DIM)
     if mission.unverified:
         said, style = mission.unverified, look.WARN
-    counted = " (seq 0 is item 1)" if total and mission.items[0].seq == 0 else ""
-    lines = [(f"mission: {total} items, verified{counted}", look.GOOD)]
+    counted = " from 0" if total and mission.items[0].seq == 0 else ""
+    lines = [(f"mission: {total} items{counted}, verified", look.GOOD)]
     if not total:
         lines = [("mission: none that was verified", look.DIM)]
         if not said:

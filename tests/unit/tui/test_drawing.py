@@ -367,7 +367,7 @@ def test_the_mission_panel_says_what_is_on_board_how_far_it_is_and_what_comes() 
     assert mission_rows(scene)[0] == "mission: none that was verified"
     scene.update(SQUARE)
     assert mission_rows(scene)[:4] == [
-        "mission: 60 items, verified",
+        "mission: 60 items from 0, verified",
         "   0 takeoff             5 m",
         "   1 change speed        ",
         "   2 waypoint            512.5 m amsl",
