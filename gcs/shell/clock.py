@@ -30,12 +30,6 @@ class Clock:
         """Real seconds until `deadline_ns`, never negative: what `select` should wait."""
         return max(0.0, (deadline_ns - self.now_ns()) / 1e9 / self._speedup)
 
-    def pause_until(self, time_ns: int) -> None:
-        """Do nothing until then."""
-        wait_ns = time_ns - self.now_ns()
-        if wait_ns > 0:
-            time.sleep(wait_ns / 1e9 / self._speedup)
-
     def stamp(self) -> str:
         """Local wall time of the start as YYYYMMDD-HHMMSS, for the log file's name."""
         return time.strftime("%Y%m%d-%H%M%S", time.localtime(self.start_ns // 1_000_000_000))

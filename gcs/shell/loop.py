@@ -67,6 +67,9 @@ DENSE_DATAGRAMS = 3
 """Where datagrams of vehicles come so close one after another, or so many together, turns are
 `GATHER_NS` apart: a turn for 5 datagrams costs a third of 5 turns, and nobody waits long."""
 GATHER_NS = 2_000_000
+"""Only vehicles wait for that: what clients and operators send is read at once.  So long after
+something was sent to a vehicle, vehicles do not wait either: what comes may be its answer, for
+which the next question waits, such as that for a mission's next item."""
 ALONE_NS = 4_000_000
 """Where datagrams came further apart than this, twice, a turn reads one: a second read that finds
 nothing costs as much as the first one, and what does come then is there in the next turn."""
@@ -133,6 +136,9 @@ class Loop:
         self._look_ns = 0
         self._read_ns = 0
         self._gather_until_ns = 0
+        """Until then nothing of vehicles is read."""
+        self._sent_ns = 0
+        """When something was sent to a vehicle last."""
         self._alone = False
         """Datagrams came one by one, `ALONE_NS` and more apart."""
         self._recording_ns = 0
@@ -194,15 +200,13 @@ class Loop:
         """Once a turn, for each datagram of a slow stream: nothing here is more than it must be."""
         core_ns, recording_ns = self._core.deadline_ns, self._recording.deadline_ns
         self._recording_ns = recording_ns
-        if self._gather_until_ns:
-            self._clock.pause_until(min(self._gather_until_ns, core_ns))
-            self._gather_until_ns = 0
         deadline_ns = core_ns if core_ns < recording_ns else recording_ns
         sources: list[Source] = [self._signals_fd]
+        from_links: list[Source] = []
         for link in self._links:
             fd = link.fileno()
             if fd >= 0:
-                sources.append(fd)
+                from_links.append(fd)
             due_ns = link.deadline_ns
             if due_ns is not None and due_ns < deadline_ns:
                 deadline_ns = due_ns
@@ -230,8 +234,18 @@ class Loop:
             due_ns = ports.deadline_ns
             if due_ns < deadline_ns:
                 deadline_ns = due_ns
+        if self._gather_until_ns:
+            wait_s = self._clock.seconds_until(min(self._gather_until_ns, core_ns))
+            if self._busy:
+                wait_s = 0.0
+            readable, writable, _ = select.select(sources, sinks, [], wait_s)
+            if (
+                readable or writable or self._busy
+            ) and self._clock.now_ns() < self._gather_until_ns:
+                return readable, writable
+            self._gather_until_ns = 0
         wait_s = 0.0 if self._busy else self._clock.seconds_until(deadline_ns)
-        readable, writable, _ = select.select(sources, sinks, [], wait_s)
+        readable, writable, _ = select.select(sources + from_links, sinks, [], wait_s)
         return readable, writable
 
     def _wake_if_due(self) -> None:
@@ -258,7 +272,8 @@ class Loop:
                 self._feed(LinkEvent(number, news.text, news.trouble))
         if datagrams:
             before_ns, self._read_ns, self._alone = self._read_ns, began_ns, apart
-            if datagrams >= DENSE_DATAGRAMS or began_ns - before_ns < DENSE_NS:
+            dense = datagrams >= DENSE_DATAGRAMS or began_ns - before_ns < DENSE_NS
+            if dense and began_ns - self._sent_ns >= GATHER_NS:
                 # Before the next turn more are to come.  A turn that took longer than that is
                 # followed by the next one at once.
                 self._gather_until_ns = began_ns + GATHER_NS
@@ -389,6 +404,7 @@ class Loop:
     def _transmit(self, link: int, data: bytes) -> None:
         if link < len(self._links):
             self._links[link].send(data)
+            self._sent_ns = self._clock.now_ns()
         elif self._client_ports is not None:
             self._client_ports.send(link, data)
 

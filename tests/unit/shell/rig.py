@@ -42,15 +42,11 @@ class PaperClock(Clock):
         super().__init__()
         self.time_ns = START_NS
         self.waits_s: list[float] = []
-        self.pauses_ns: list[int] = []
         self.steps: Iterator[Step] = iter(())
         self.after_last: Step = lambda: None
 
     def now_ns(self) -> int:
         return self.time_ns
-
-    def pause_until(self, time_ns: int) -> None:
-        self.pauses_ns.append(time_ns)
 
     def seconds_until(self, deadline_ns: int) -> float:
         self.waits_s.append(max(0.0, (deadline_ns - self.time_ns) / 1e9))

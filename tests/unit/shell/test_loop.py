@@ -286,7 +286,7 @@ def test_a_deadline_that_passes_while_datagrams_keep_coming_is_served_between_th
 
 def test_one_turn_takes_no_more_than_its_share_of_a_flood(rig: Rig) -> None:
     flood = [b"%d" % n for n in range(MAX_DATAGRAMS_A_TURN + 1)]
-    rig.run(lambda: rig.links[0].bring(*flood), lambda: rig.advance(1))
+    rig.run(lambda: rig.links[0].bring(*flood), lambda: rig.advance(1), lambda: None)
     last, next_turn = Datagram(0, flood[-2]), Datagram(0, flood[-1])
     assert rig.times_ns(last) == [START_NS]
     assert rig.times_ns(next_turn) == [START_NS + 1 * MS]
@@ -631,6 +631,12 @@ class PaperPorts(ClientPorts):
         self.verified.append(link)
 
 
+def _gathered(rig: Rig) -> list[int]:
+    """Which of its waits were for more datagrams of vehicles, counted from 0."""
+    waits_s = [round(wait_s, 9) for wait_s in rig.clock.waits_s]
+    return [number for number, wait_s in enumerate(waits_s) if wait_s == GATHER_NS / 1e9]
+
+
 def test_turns_are_apart_where_datagrams_are_dense_and_nowhere_else(rig: Rig) -> None:
     link = rig.links[0]
 
@@ -641,11 +647,34 @@ def test_turns_are_apart_where_datagrams_are_dense_and_nowhere_else(rig: Rig) ->
 
         return step
 
+    def gathers() -> None:
+        """A wait of its own, before the one for all."""
+
     rig.run(
-        bring(8.0, 1), bring(8.0, 2), bring(1.0, 1), bring(0.4, 1), bring(8.0, 3), bring(8.0, 1)
+        *(bring(8.0, 1), bring(8.0, 2), bring(1.0, 1), bring(0.4, 1), gathers),
+        *(bring(8.0, 3), gathers, bring(8.0, 1)),
     )
-    dense_ns = [START_NS + round(at_ms * MS) for at_ms in (17.4, 25.4)]
-    assert rig.clock.pauses_ns == [time_ns + GATHER_NS for time_ns in dense_ns]
+    assert _gathered(rig) == [4, 6]
+
+
+def test_while_turns_are_apart_all_others_are_heard_at_once(rig: Rig) -> None:
+    link = rig.links[0]
+
+    def both() -> None:
+        rig.type(b"no command\n")
+        link.bring(b"4")
+
+    rig.run(lambda: link.bring(b"1", b"2", b"3"), both, lambda: rig.advance(2.0), lambda: None)
+    came = [type(given) for given in rig.core.inputs]
+    assert came[:5] == [Datagram, Datagram, Datagram, OperatorNoise, Datagram]
+
+
+def test_what_may_be_a_vehicle_s_answer_is_not_waited_for(rig: Rig) -> None:
+    link = rig.links[0]
+    rig.core.answers[Datagram(0, b"asked")] = [Transmit(0, b"answer")]
+    steps = [lambda: link.bring(b"asked")] * 5
+    rig.run(*steps, lambda: rig.advance(1.9), lambda: link.bring(b"1", b"2", b"3"))
+    assert _gathered(rig) == []
 
 
 def test_where_datagrams_come_far_apart_a_turn_reads_one_and_loses_none(rig: Rig) -> None:
@@ -663,6 +692,7 @@ def test_where_datagrams_come_far_apart_a_turn_reads_one_and_loses_none(rig: Rig
         bring(8.0, b"1", b"2"),
         bring(8.0, b"3", b"4"),
         bring(0.1),
+        bring(0.0),  # it is waited for more
         bring(8.0, b"5", b"6"),
         bring(8.0, b"7"),
     )
@@ -679,12 +709,12 @@ def test_two_vehicles_at_once_are_not_dense(rig: Rig) -> None:
             link.bring(b"x")
 
     rig.run(bring, bring)
-    assert rig.clock.pauses_ns == []
+    assert _gathered(rig) == []
 
 
 def test_no_tick_waits_for_datagrams(rig: Rig) -> None:
     rig.run(lambda: rig.advance(49), lambda: rig.links[0].bring(b"1", b"2", b"3"))
-    assert rig.clock.pauses_ns == [START_NS + TICK_NS]
+    assert rig.clock.waits_s[2] == pytest.approx(0.001)
 
 
 def test_while_vehicles_send_all_else_is_looked_at_every_tick_and_at_once_where_it_has_come() -> (
