@@ -12,6 +12,8 @@ Value: TypeAlias = bool | int | float | str
 """Of an axis, or of a key of the simulator's table."""
 
 LANDED, AIRBORNE, GROUNDED, LATE, ERROR = "landed", "in the air", "never flew", "late", "error"
+STARVED = "starved"
+"""Of a flight in real time that the machine was too slow for: what it did says nothing."""
 
 
 class Task(msgspec.Struct, frozen=True):
@@ -66,7 +68,7 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     max_speed_m_s: float = 0.0
     touchdown_m_s: float = 0.0
     flight_s: float = 0.0
-    energy_wh: float = 0.0
+    energy_wh: float | None = 0.0
     landed_east_m: float | None = None
     landed_north_m: float | None = None
     accepted: int = 0

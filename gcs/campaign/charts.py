@@ -29,7 +29,7 @@ def distributions(rows: Sequence[Row]) -> str:
     flown = [row for row in rows if row.closest_m is not None]
     figures = []
     for name, unit in MEASURES.items():
-        values = [float(getattr(row, name)) for row in flown]
+        values = [v for row in flown if (v := getattr(row, name)) is not None]
         if values:
             figures.append(_figure(_histogram(values, unit), TITLES[name]))
     return f'<div class="pictures">{"".join(figures)}</div>'

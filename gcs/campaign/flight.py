@@ -33,13 +33,14 @@ STAMP = "20231114-221320"
 VEHICLE_WAIT_S = 60.0
 
 
-def fly(case: Case, record: Path | None = None) -> Row:
-    """Fly it.  With `record` it is recorded there, which changes nothing of the row.
+def fly(case: Case, record: Path | None = None, simulator: Simulator | None = None) -> Row:
+    """Fly it, on `simulator` where one is made already.  With `record` it is recorded there, which
+    changes nothing of the row.
 
     A bug, ours or the simulator's, is an outcome of this flight and of no other.
     """
     try:
-        return _Flight(case, record).row()
+        return _Flight(case, record, simulator).row()
     except Exception:  # noqa: BLE001 - the last resort: one bug must not end thousands of flights
         return Row(
             id=case.id, inputs=case.inputs, outcome=ERROR, error=traceback.format_exc(limit=-6)
@@ -72,9 +73,9 @@ class _TimeLimit:
 
 
 class _Flight:
-    def __init__(self, case: Case, record: Path | None) -> None:
+    def __init__(self, case: Case, record: Path | None, simulator: Simulator | None) -> None:
         self._case = case
-        self._simulator: Simulator = factory(case.simulator)({**case.table, "start_ns": START_NS})
+        self._simulator = simulator or factory(case.simulator)({**case.table, "start_ns": START_NS})
         policy = case.rules.policy
         truth = truth_of(self._simulator)
         autopilot = str(case.table.get("autopilot", ""))
@@ -150,7 +151,7 @@ class _Flight:
             max_speed_m_s=looks.max_speed_m_s,
             touchdown_m_s=looks.touchdown_m_s,
             flight_s=end_s - began_s if looks.flew else 0.0,
-            energy_wh=last.energy_j / 3600.0,
+            energy_wh=None if last.energy_j is None else last.energy_j / 3600.0,
             landed_east_m=east if landed else None,
             landed_north_m=north if landed else None,
             accepted=counts.accepted,

@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import entry_points
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import msgspec
 
 from gcs.frames import Vec3
 
 GROUP = "mavgate.simulators"
+REAL_TIME = "mavgate.real_time_simulators"
+"""Those that a clock of their own drives, and whose flights do not repeat."""
 
 
 class Simulator(Protocol):
@@ -40,16 +42,32 @@ Factory: TypeAlias = Callable[[Mapping[str, object]], Simulator]
 `start_ns` and `seed` are in every table; the rest is what the campaign's file says."""
 
 
+class RealTime(Simulator, Protocol):
+    """One that begins when it is first asked for something, and ends with `close`."""
+
+    @property
+    def starved(self) -> str:
+        """In which way the machine was too slow for what was flown to count; or nothing."""
+        ...
+
+    def close(self) -> None: ...
+
+
+RealTimeFactory: TypeAlias = Callable[[Mapping[str, object]], RealTime]
+"""As `Factory`; `instance` in its table is the number of a simulator among those that run."""
+
+
 class Truth(msgspec.Struct, frozen=True, gc=False):
     """`pos_ned` [m] counts from where the vehicle stood at its start, which is `home` (degrees,
-    degrees, metres above sea level); `energy_j` is what its battery has given so far."""
+    degrees, metres above sea level); `energy_j` is what its battery has given so far, where that
+    is measured at all."""
 
     pos_ned: Vec3
     v_ned: Vec3
     home: Vec3
     armed: bool
     landed: bool
-    energy_j: float
+    energy_j: float | None = None
 
 
 def truth_of(simulator: Simulator) -> Truth:
@@ -67,8 +85,18 @@ class UnknownSimulatorError(Exception):
 
 def factory(name: str) -> Factory:
     """Raises UnknownSimulatorError."""
-    found = {each.name: each for each in entry_points(group=GROUP)}
+    made: Factory = _loaded(GROUP, name)
+    return made
+
+
+def real_time_factory(name: str) -> RealTimeFactory:
+    """Raises UnknownSimulatorError."""
+    made: RealTimeFactory = _loaded(REAL_TIME, name)
+    return made
+
+
+def _loaded(group: str, name: str) -> Any:
+    found = {each.name: each for each in entry_points(group=group)}
     if name not in found:
         raise UnknownSimulatorError(name, sorted(found))
-    made: Factory = found[name].load()
-    return made
+    return found[name].load()

@@ -189,7 +189,7 @@ def _cells(rows: Sequence[Row]) -> list[Cell]:
 def _spreads(rows: Sequence[Row]) -> Iterable[Spread]:
     flown = [row for row in rows if row.closest_m is not None]
     for name, unit in MEASURES.items():
-        ordered = sorted(float(getattr(row, name)) for row in flown)
+        ordered = sorted(v for row in flown if (v := getattr(row, name)) is not None)
         if ordered:
             quantiles = tuple(quantile(ordered, share) for share in QUANTILES)
             yield Spread(name, unit, quantiles)

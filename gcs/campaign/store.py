@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     import pyarrow
 
 PLAN, ROWS, PARTS, RECORDS = "plan.msgpack", "rows.parquet", "parts", "records"
+BESIDE = "beside"
+"""The folder of real autopilots, each with a store of the same plan."""
 _OWN = tuple(name for name in Row.__struct_fields__ if name != "inputs")
 Columns: TypeAlias = "dict[str, list[Value | None]]"
 
@@ -72,7 +74,11 @@ class Store:
         return file
 
     def record(self, number: int) -> Path:
-        return self.folder / RECORDS / f"{number:06d}.mcap"
+        return self.records / f"{number:06d}.mcap"
+
+    @property
+    def records(self) -> Path:
+        return self.folder / RECORDS
 
     def _put(self, plan: Plan, rows: Sequence[Row], file: Path) -> None:
         from pyarrow import parquet

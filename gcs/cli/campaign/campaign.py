@@ -20,6 +20,7 @@ from gcs.operator.errors import ExitError
 
 if TYPE_CHECKING:
     from gcs.campaign.campaign import Campaign
+    from gcs.campaign.case import Row
     from gcs.campaign.plan import Plan
     from gcs.campaign.requirement import Requirement
     from gcs.campaign.statistics import Summary
@@ -147,12 +148,8 @@ def show(ctx: click.Context, folder: Path, number: int, output: Path | None, as_
     from gcs.shell.environment import environment
 
     _check_installed()
+    plan, rows = _flown(folder)
     store = Store(folder)
-    try:
-        plan, rows = store.plan(), {row.id: row for row in store.rows()}
-    except (OSError, msgspec.DecodeError) as error:
-        hint = "FOLDER is where gcs campaign run has put its rows"
-        raise ExitError(ExitCode.BAD_FILE, f"{folder}: no campaign: {error}", hint) from error
     before = rows.get(number)
     if before is None:
         hint = f"flown so far: {len(rows)}"
@@ -178,6 +175,70 @@ def show(ctx: click.Context, folder: Path, number: int, output: Path | None, as_
         click.echo(f"audit: {'no difference' if good else 'DIFFERENCES: gcs log audit'}")
         click.echo(f"{record}: gcs log report {record}")
     ctx.exit(ExitCode.DONE if same and good else ExitCode.DIFFERENT)
+
+
+@campaign.command()
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("simulator", metavar="px4-sitl|arducopter-sitl")
+@click.option(
+    "--flights",
+    type=click.IntRange(1, 100_000),
+    default=50,
+    show_default=True,
+    help="So many of the campaign's flights, spread evenly over those that it can fly.",
+)
+@click.option(
+    "--at-once",
+    type=click.IntRange(1, 64),
+    default=1,
+    show_default=True,
+    help="So many at a time, each in a network of its own.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print what is compared as one JSON object.")
+def beside(folder: Path, simulator: str, flights: int, at_once: int, as_json: bool) -> None:
+    """Fly flights of a campaign once more on a real autopilot, in real time: do they agree?
+
+    MAVGATE_PX4 and MAVGATE_ARDUCOPTER name the autopilots, each with its own simulation. Flights
+    that are there already are not flown again.
+
+    Example: gcs campaign beside wind px4-sitl --flights 50 --at-once 2
+    """
+    import msgspec
+
+    from gcs.campaign.beside import NoneFitsError, chosen, compared
+    from gcs.campaign.real_autopilot import NoAutopilotError, installed
+    from gcs.campaign.real_time_flights import NoNetworkError, fly_apart
+    from gcs.campaign.simulators import UnknownSimulatorError, real_time_factory
+    from gcs.campaign.store import BESIDE
+
+    _check_installed()
+    plan, ours = _flown(folder)
+    store = _store(folder / BESIDE / simulator, plan)
+    known = {row.id: row for row in store.rows()}
+    cases = [
+        msgspec.structs.replace(plan.case(row.id, row.inputs), simulator=simulator)
+        for row in ours.values()
+    ]
+    try:
+        installed(simulator)
+        picked = chosen(cases, real_time_factory(simulator), flights)
+        left = [case for case in picked if case.id not in known]
+        with _progress(len(left)) as tell:
+            for row in fly_apart(left, at_once, store.records):
+                store.append(plan, [row])
+                known[row.id] = row
+                tell(len(known))
+    except UnknownSimulatorError as error:
+        raise ExitError(ExitCode.USAGE, str(error), error.hint) from error
+    except (NoneFitsError, NoNetworkError, NoAutopilotError) as error:
+        raise ExitError(ExitCode.NOT_COMPLETED, str(error)) from error
+    told = compared(simulator, ours, known)
+    store.finish(plan, [known[number] for number in sorted(known)])
+    if as_json:
+        click.echo(msgspec.json.encode(told).decode())
+        return
+    for line in told.lines():
+        click.echo(line)
 
 
 def _in_lines(value: object) -> str:
@@ -227,6 +288,19 @@ def _store(folder: Path, plan: Plan) -> Store:
     except OSError as error:
         raise ExitError(ExitCode.RECORDER, f"{error.filename}: {error.strerror}") from error
     return store
+
+
+def _flown(folder: Path) -> tuple[Plan, dict[int, Row]]:
+    import msgspec
+
+    from gcs.campaign.store import Store
+
+    store = Store(folder)
+    try:
+        return store.plan(), {row.id: row for row in store.rows()}
+    except (OSError, msgspec.DecodeError) as error:
+        hint = "FOLDER is where gcs campaign run has put its rows"
+        raise ExitError(ExitCode.BAD_FILE, f"{folder}: no campaign: {error}", hint) from error
 
 
 def _run(plan: Plan, store: Store, workers: int, scheduler: str, keep: int) -> Summary:
