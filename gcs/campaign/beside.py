@@ -80,9 +80,14 @@ def chosen(cases: Iterable[Case], make: RealTimeFactory, most: int) -> list[Case
     return [fitting[place * len(fitting) // count] for place in range(count)]
 
 
+def counts(row: Row) -> bool:
+    """Whether it says something: the machine was fast enough, and it came about."""
+    return row.outcome not in (STARVED, ERROR)
+
+
 def compared(simulator: str, ours: Mapping[int, Row], real: Mapping[int, Row]) -> Compared:
     """Rows by number; those of `real` are flights of `ours`."""
-    counted = [row for _, row in sorted(real.items()) if row.outcome not in (STARVED, ERROR)]
+    counted = [row for _, row in sorted(real.items()) if counts(row)]
     pairs = [Pair(row.id, str(row.inputs["task"]), ours[row.id], row) for row in counted]
     both = [p for p in pairs if p.ours.closest_m is not None and p.real.closest_m is not None]
     by = {p.id: _more(p, "closest_m") or 0.0 for p in both}

@@ -52,14 +52,14 @@ class Store:
         return decode((self.folder / PLAN).read_bytes())
 
     def rows(self) -> list[Row]:
-        """Of all parts, by number; a flight that was flown twice is one row."""
+        """Of all parts, by number; of a flight that was flown twice the later one."""
         from pyarrow import parquet
 
         found: dict[int, Row] = {}
         for part in sorted((self.folder / PARTS).glob("*.parquet")):
             self._parts = max(self._parts, int(part.stem))
             for row in _rows_of(parquet.read_table(part)):
-                found.setdefault(row.id, row)
+                found[row.id] = row
         return [found[number] for number in sorted(found)]
 
     def append(self, plan: Plan, rows: Sequence[Row]) -> None:

@@ -73,6 +73,7 @@ def test_a_flight_is_judged_and_recorded_and_flown_again_it_is_the_same(
     assert row.max_up_m == pytest.approx(3.0, abs=0.7)
     assert row.landed_east_m == pytest.approx(2.0, abs=1.0)
     assert 0.3 < row.touchdown_m_s < 1.2
+    assert row.energy_wh is not None
     assert 0.5 < row.energy_wh < 5.0
 
     record = tmp_path / "again.mcap"

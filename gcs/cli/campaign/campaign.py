@@ -199,13 +199,13 @@ def beside(folder: Path, simulator: str, flights: int, at_once: int, as_json: bo
     """Fly flights of a campaign once more on a real autopilot, in real time: do they agree?
 
     MAVGATE_PX4 and MAVGATE_ARDUCOPTER name the autopilots, each with its own simulation. Flights
-    that are there already are not flown again.
+    that are there already and count are not flown again.
 
     Example: gcs campaign beside wind px4-sitl --flights 50 --at-once 2
     """
     import msgspec
 
-    from gcs.campaign.beside import NoneFitsError, chosen, compared
+    from gcs.campaign.beside import NoneFitsError, chosen, compared, counts
     from gcs.campaign.real_autopilot import NoAutopilotError, installed
     from gcs.campaign.real_time_flights import NoNetworkError, fly_apart
     from gcs.campaign.simulators import UnknownSimulatorError, real_time_factory
@@ -222,7 +222,7 @@ def beside(folder: Path, simulator: str, flights: int, at_once: int, as_json: bo
     try:
         installed(simulator)
         picked = chosen(cases, real_time_factory(simulator), flights)
-        left = [case for case in picked if case.id not in known]
+        left = [case for case in picked if case.id not in known or not counts(known[case.id])]
         with _progress(len(left)) as tell:
             for row in fly_apart(left, at_once, store.records):
                 store.append(plan, [row])

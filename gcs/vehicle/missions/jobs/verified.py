@@ -14,7 +14,7 @@ from gcs.vehicle.missions.jobs.facts import Facts, Learning, landings_on_board
 from gcs.vehicle.missions.jobs.job import Asked, Job, JobWork, VehicleView
 from gcs.vehicle.missions.paths import verifying
 
-PAUSE_NS = 15_000_000
+PAUSE_NS = 2_000_000
 """Between two steps of some milliseconds: positions and ticks are handled in time meanwhile."""
 
 
