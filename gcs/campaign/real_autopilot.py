@@ -18,6 +18,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -207,9 +208,9 @@ class RealAutopilot:
         a station then finds its positions too old, or decides late.
         """
         wall_ms = (time.monotonic_ns() - self._began_ns) / 1e6
-        share = (self._truth.clock_ms - self._clock_began_ms) / wall_ms
         if self._process is None or wall_ms < 1e3 * ASK_EVERY_S:
             return ""
+        share = (self._truth.clock_ms - self._clock_began_ms) / wall_ms
         if share < LEAST_SHARE:
             return f"the vehicle's clock ran at {share:.2f} of real time"
         for who, worst_ns in (("vehicle", self._silent_ns), ("station", self._late_ns)):
@@ -250,16 +251,15 @@ class RealAutopilot:
         for name, value in values.items():
             self._truth.parameters.pop(name, None)
             self._until(
-                lambda name=name, value=value: (
-                    abs(  # type: ignore[misc]
-                        self._truth.parameters.get(name, -1e9) - value
-                    )
-                    < 1e-3 * max(1.0, value)
-                ),
+                partial(self._is_set, name, value),
                 SET_WAIT_S,
                 f"does not take {name}",
                 [ParamSet(value, self._sysid, 1, name, ParamType.REAL32)],
             )
+
+    def _is_set(self, name: str, value: float) -> bool:
+        told = self._truth.parameters.get(name)
+        return told is not None and abs(told - value) < 1e-3 * max(1.0, value)
 
     def _until(
         self,
@@ -276,8 +276,7 @@ class RealAutopilot:
                 raise NoAutopilotError(f"{self._kind.runs}: {wrong}; {self._told()}")
             for message in self._streams() if ask is None else ask:
                 self._beside.send(self._write(message))
-            again_s = time.monotonic() + ASK_EVERY_S
-            self._hear(lambda again_s=again_s: 0 if condition() else again_s - time.monotonic())  # type: ignore[misc]
+            self._hear(partial(_left_s, condition, time.monotonic() + ASK_EVERY_S))
 
     def _streams(self) -> Iterable[Message]:
         for definition in MESSAGES.values():
@@ -306,7 +305,7 @@ class RealAutopilot:
                     self._take(split(data))
                     if link is self._beside:
                         self._spoken()
-                    if link is self._link:
+                    else:
                         found.append(data)
 
     def _spoken(self) -> None:
@@ -319,6 +318,11 @@ class RealAutopilot:
         for item in items:
             if isinstance(item, Frame):
                 self._truth.take(item)
+
+
+def _left_s(condition: Callable[[], bool], until_s: float) -> float:
+    """Until then, or nothing once it is so."""
+    return 0.0 if condition() else until_s - time.monotonic()
 
 
 class _Link:

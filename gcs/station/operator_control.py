@@ -85,9 +85,9 @@ class OperatorControl:
             return []
         if hold:
             self._there[operator] = replace(leaving, hold_on_leave=True)
-        hold = self.leaves_held(operator)
-        self.leaving[operator] = now_ns + LEAVING_NS if hold else now_ns
-        return self._hold("left") if hold else []
+        held = self.leaves_held(operator)
+        self.leaving[operator] = now_ns + LEAVING_NS if held else now_ns
+        return self._hold("left") if held else []
 
     def leaves_held(self, operator: int) -> bool:
         """Whether the vehicle is held when this operator leaves."""

@@ -5,12 +5,13 @@ docs/real.md says how to name one's own.
 
 import os
 import shlex
-import shutil
 import signal
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+
+from gcs.campaign.real_autopilot import private_network
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 GROUND_PORT = 14550  # where either autopilot sends to, for ground stations
@@ -77,10 +78,5 @@ def end(process: subprocess.Popen[bytes]) -> None:
 
 def in_private_network(module: str, arguments: list[str]) -> list[str] | None:
     """The command that runs a module of the tests in a network of its own, or None: not allowed."""
-    if shutil.which("unshare") is None or shutil.which("ip") is None:
-        return None
-    unshare = ["unshare", "-n"] if os.geteuid() == 0 else ["unshare", "-rn"]
-    inside = ["sh", "-c", 'ip link set lo up && exec "$@"', "sh"]
-    if subprocess.run([*unshare, *inside, "true"], capture_output=True).returncode != 0:
-        return None
-    return [*unshare, *inside, sys.executable, "-m", module, *arguments]
+    network = private_network()
+    return network and [*network, sys.executable, "-m", module, *arguments]

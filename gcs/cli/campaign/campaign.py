@@ -205,16 +205,14 @@ def beside(folder: Path, simulator: str, flights: int, at_once: int, as_json: bo
     """
     import msgspec
 
-    from gcs.campaign.beside import NoneFitsError, chosen, compared, counts
     from gcs.campaign.real_autopilot import NoAutopilotError, installed
+    from gcs.campaign.real_comparison import NoneFitsError, chosen, compared, counts
     from gcs.campaign.real_time_flights import NoNetworkError, fly_apart
     from gcs.campaign.simulators import UnknownSimulatorError, real_time_factory
     from gcs.campaign.store import BESIDE
 
     _check_installed()
     plan, ours = _flown(folder)
-    store = _store(folder / BESIDE / simulator, plan)
-    known = {row.id: row for row in store.rows()}
     cases = [
         msgspec.structs.replace(plan.case(row.id, row.inputs), simulator=simulator)
         for row in ours.values()
@@ -222,12 +220,14 @@ def beside(folder: Path, simulator: str, flights: int, at_once: int, as_json: bo
     try:
         installed(simulator)
         picked = chosen(cases, real_time_factory(simulator), flights)
+        store = _store(folder / BESIDE / simulator, plan)
+        known = {row.id: row for row in store.rows()}
         left = [case for case in picked if case.id not in known or not counts(known[case.id])]
         with _progress(len(left)) as tell:
-            for row in fly_apart(left, at_once, store.records):
+            for done, row in enumerate(fly_apart(left, at_once, store.records), 1):
                 store.append(plan, [row])
                 known[row.id] = row
-                tell(len(known))
+                tell(done)
     except UnknownSimulatorError as error:
         raise ExitError(ExitCode.USAGE, str(error), error.hint) from error
     except (NoneFitsError, NoNetworkError, NoAutopilotError) as error:

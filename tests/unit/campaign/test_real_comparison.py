@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from gcs.campaign.beside import NoneFitsError, chosen, compared
 from gcs.campaign.case import ERROR, LANDED, STARVED, Row, Value
 from gcs.campaign.real_autopilot import ARDUCOPTER, PX4, arducopter, asked_of, px4
+from gcs.campaign.real_comparison import NoneFitsError, chosen, compared
 from gcs.campaign.real_truth import RealTruth
 from gcs.wire.codec import FrameWriter
 from gcs.wire.frame import Frame, split
